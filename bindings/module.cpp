@@ -1,0 +1,14 @@
+#include "rooms.hpp"
+
+PYBIND11_MODULE(_core, m) {
+  m.doc() = "The saras core. Import the rooms: saras.teleop, saras.kinematics, saras.sim, saras.net.";
+  saras::bindings::bind_spatial(m);
+  auto teleop = m.def_submodule("teleop", "Frame mapping, transparency, energy tanks, velocity integrator");
+  saras::bindings::bind_teleop(teleop);
+  auto kinematics = m.def_submodule("kinematics", "Chains and the SARAS arm");
+  saras::bindings::bind_kinematics(kinematics);
+  auto sim = m.def_submodule("sim", "Simulated arm, tissue, hand and network");
+  saras::bindings::bind_sim(sim);
+  auto net = m.def_submodule("net", "Datagram codecs");
+  saras::bindings::bind_net(net);
+}

@@ -1,0 +1,14 @@
+// One function a room; module.cpp calls them in order.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace saras::bindings {
+
+void bind_spatial(pybind11::module_& m);
+void bind_teleop(pybind11::module_& m);
+void bind_kinematics(pybind11::module_& m);
+void bind_sim(pybind11::module_& m);
+void bind_net(pybind11::module_& m);
+
+}  // namespace saras::bindings
