@@ -1,0 +1,152 @@
+"""Recording of a law's steps as flat numbers, so that a run can be replayed exactly (see ``saras.replay``).
+
+No ROS in here: a node wraps its law in a :class:`TracedLaw`, steps it, and copies ``law.tick`` into a
+``saras_ros1/LawTick``::
+
+    law = TracedLaw(EnergyTank, config, 2, name="tank_master")
+    output = law.step(desired=…, conjugate=…, dt=dt)       # keywords only
+    publisher.publish(LawTick(header=…, **law.tick._asdict()))
+
+Values are flattened in field order: numbers and flags as one float64, arrays row by row, structs recursively.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+STATE_UNCHANGED, STATE_PERIODIC, STATE_SET = 0, 1, 2
+STATE_PERIOD_TICKS = 100
+
+Layout = list[list[Any]]  #: one [name, kind, shape] an argument; kind: number, flag, integer, array, none
+
+
+class Tick(NamedTuple):
+    """The fields of ``saras_ros1/LawTick`` beside its header."""
+
+    seq: int
+    dt: float
+    layout: int
+    state_flag: int
+    input: list[float]
+    output: list[float]
+    state: list[float]
+
+
+class TracedLaw:
+    """A law that remembers its last step as a :class:`Tick`. Everything else is passed on to the law.
+
+    Parameters: the law's class, then its constructor's arguments, which become part of ``info``.
+    """
+
+    def __init__(self, law_class: type, *args: Any, name: str = "", **kwargs: Any) -> None:
+        self._law = law_class(*args, **kwargs)
+        self._description = {
+            "name": name,
+            "law": f"{_public_module(law_class)}.{law_class.__name__}",
+            "args": [to_plain(value) for value in args],
+            "kwargs": {key: to_plain(value) for key, value in kwargs.items()},
+        }
+        self._layouts: list[Layout] = []
+        self._seq = 0
+        self._state_set = True
+        self.tick: Tick | None = None
+
+    def step(self, *, dt: float, **inputs: Any) -> Any:
+        """Steps the law; the arguments, the output and (now and then) the state before are in ``tick``."""
+        flag = STATE_SET if self._state_set else STATE_UNCHANGED
+        if flag == STATE_UNCHANGED and self._seq % STATE_PERIOD_TICKS == 0:
+            flag = STATE_PERIODIC
+        state = list(flatten(self._law.state)) if flag != STATE_UNCHANGED else []
+        output = self._law.step(dt=dt, **inputs)
+        layout, flat_input = describe(inputs)
+        self.tick = Tick(self._seq, dt, self._layout_index(layout), flag, flat_input, list(flatten(output)), state)
+        self._seq += 1
+        self._state_set = False
+        return output
+
+    @property
+    def info(self) -> str:
+        """JSON for ``/laws/<name>/info``. It grows when an argument changes its shape: publish it (latched) again
+        whenever it differs from what was published last."""
+        return json.dumps({**self._description, "layouts": self._layouts})
+
+    def _layout_index(self, layout: Layout) -> int:
+        if layout not in self._layouts:
+            self._layouts.append(layout)
+        return self._layouts.index(layout)
+
+    def __getattr__(self, name: str) -> Any:
+        value = getattr(self._law, name)
+        if callable(value):
+            # Any method beside step may change the state: the next tick carries it.
+            self._state_set = True
+        return value
+
+
+def flatten(value: Any) -> Iterator[float]:
+    """The numbers of a value in field order. None gives nothing."""
+    if value is None:
+        return
+    if isinstance(value, (bool, int, float, np.generic)):
+        yield float(value)
+    elif isinstance(value, np.ndarray):
+        yield from value.ravel().astype(float).tolist()
+    elif hasattr(value, "_fields"):
+        for field in value._fields:
+            yield from flatten(getattr(value, field))
+    elif isinstance(value, (list, tuple)):
+        for item in value:
+            yield from flatten(item)
+    elif hasattr(value, "value"):  # an enumeration such as saras.Status
+        yield float(int(value.value))
+    else:
+        raise TypeError(f"cannot flatten {type(value).__name__}")
+
+
+def describe(inputs: dict[str, Any]) -> tuple[Layout, list[float]]:
+    """Layout and numbers of keyword arguments."""
+    layout: Layout = []
+    numbers: list[float] = []
+    for name, value in inputs.items():
+        if value is None:
+            layout.append([name, "none", []])
+        elif isinstance(value, (bool, np.bool_)):
+            layout.append([name, "flag", []])
+        elif isinstance(value, (int, np.integer)):
+            layout.append([name, "integer", []])
+        elif isinstance(value, (float, np.floating)):
+            layout.append([name, "number", []])
+        else:
+            value = np.asarray(value, dtype=float)
+            layout.append([name, "array", list(value.shape)])
+        numbers.extend(flatten(value))
+    return layout, numbers
+
+
+def to_plain(value: Any) -> Any:
+    """JSON-ready form of a constructor argument; structs become {"type": …, "fields": {…}}."""
+    if hasattr(value, "_fields"):
+        return {
+            "type": f"{_public_module(type(value))}.{type(value).__name__}",
+            "fields": {field: to_plain(getattr(value, field)) for field in value._fields},
+        }
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [to_plain(item) for item in value]
+    if isinstance(value, np.generic):
+        return value.item()
+    if value is None or isinstance(value, (bool, int, float, str)):
+        return value
+    if hasattr(value, "name") and hasattr(type(value), "__members__"):
+        return {"type": f"{_public_module(type(value))}.{type(value).__name__}", "member": value.name}
+    raise TypeError(f"cannot record an argument of type {type(value).__name__}")
+
+
+def _public_module(cls: type) -> str:
+    """saras.teleop for classes that pybind11 calls saras._core.teleop."""
+    return cls.__module__.replace("saras._core", "saras")
