@@ -3,6 +3,9 @@
 #include "saras/teleop/twist_estimator.hpp"
 
 namespace saras::bindings {
+
+void bind_energy_tank(py::module_& m);
+
 namespace {
 
 void bind_twist_estimator(py::module_& m) {
@@ -17,11 +20,11 @@ void bind_twist_estimator(py::module_& m) {
       .field("has_previous", &TwistEstimatorState::has_previous, "whether a pose was seen")
       .field("base_T_previous", &TwistEstimatorState::base_T_previous, "(4, 4) last pose")
       .field("twist_filtered", &TwistEstimatorState::twist_filtered, "(6,) filter state");
-  py::class_<TwistEstimator>(m, "TwistEstimator", "Mean twist of a moving frame over each interval, raw and low-passed.")
+  py::class_<TwistEstimator>(m, "TwistEstimator",
+                             "Mean twist of a moving frame over each interval, raw and low-passed.")
       .def(py::init<TwistEstimatorConfig>(), py::arg("config") = TwistEstimatorConfig{})
       .def(
-          "step",
-          [](TwistEstimator& self, const Pose& base_T_body, double dt) { return self.step({base_T_body}, dt); },
+          "step", [](TwistEstimator& self, const Pose& base_T_body, double dt) { return self.step({base_T_body}, dt); },
           py::arg("base_T_body"), py::arg("dt"), "One tick: the (4, 4) pose now, dt [s] since the last one.")
       .def("reset", &TwistEstimator::reset, py::arg("state") = TwistEstimatorState{})
       .def_property_readonly("state", [](const TwistEstimator& self) { return self.state(); });
@@ -29,6 +32,9 @@ void bind_twist_estimator(py::module_& m) {
 
 }  // namespace
 
-void bind_teleop(py::module_& m) { bind_twist_estimator(m); }
+void bind_teleop(py::module_& m) {
+  bind_twist_estimator(m);
+  bind_energy_tank(m);
+}
 
 }  // namespace saras::bindings

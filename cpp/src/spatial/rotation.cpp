@@ -27,8 +27,7 @@ Quaternion rotation_exp(const Vector3& rotation_vector) {
 }
 
 Twist displacement(const Pose& base_T_1, const Pose& base_T_2) {
-  return {base_T_2.translation - base_T_1.translation,
-          rotation_log(base_T_2.rotation * base_T_1.rotation.conjugate())};
+  return {base_T_2.translation - base_T_1.translation, rotation_log(base_T_2.rotation * base_T_1.rotation.conjugate())};
 }
 
 Pose add_delta(const Pose& base_T_body, const Twist& base_twist, Seconds dt) {

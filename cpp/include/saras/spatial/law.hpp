@@ -29,6 +29,8 @@ constexpr bool has_law_shape() {
 }
 
 /// True for a time step that a law may integrate over.
-inline bool is_valid_time_step(Seconds dt, Seconds dt_max) noexcept { return std::isfinite(dt) && dt > 0.0 && dt <= dt_max; }
+inline bool is_valid_time_step(Seconds dt, Seconds dt_max) noexcept {
+  return std::isfinite(dt) && dt > 0.0 && dt <= dt_max;
+}
 
 }  // namespace saras

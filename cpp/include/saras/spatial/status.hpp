@@ -7,12 +7,12 @@ namespace saras {
 
 enum class Status : std::uint8_t {
   kOk = 0,
-  kLimited,            ///< output was bounded (saturation, workspace, lead, budget)
-  kWaiting,            ///< references not taken yet: the safe output
-  kStale,              ///< an input is older than its limit: the safe output
-  kInvalidInput,       ///< non-finite number, non-unit quaternion: the safe output, state kept
-  kInvalidTimeStep,    ///< dt not finite, not positive, or beyond its bound: the safe output
-  kRateExceeded,       ///< the conjugate moved faster than the configured rate: damping only
+  kLimited,          ///< output was bounded (saturation, workspace, lead, budget)
+  kWaiting,          ///< references not taken yet: the safe output
+  kStale,            ///< an input is older than its limit: the safe output
+  kInvalidInput,     ///< non-finite number, non-unit quaternion: the safe output, state kept
+  kInvalidTimeStep,  ///< dt not finite, not positive, or beyond its bound: the safe output
+  kRateExceeded,     ///< the conjugate moved faster than the configured rate: damping only
 };
 
 /// Upper-case name, as shown to operators and in messages.

@@ -42,8 +42,12 @@ struct Wrench {
   Vector3 torque = Vector3::Zero();
 };
 
-inline Twist operator*(const Quaternion& a_R_b, const Twist& in_b) { return {a_R_b * in_b.linear, a_R_b * in_b.angular}; }
-inline Wrench operator*(const Quaternion& a_R_b, const Wrench& in_b) { return {a_R_b * in_b.force, a_R_b * in_b.torque}; }
+inline Twist operator*(const Quaternion& a_R_b, const Twist& in_b) {
+  return {a_R_b * in_b.linear, a_R_b * in_b.angular};
+}
+inline Wrench operator*(const Quaternion& a_R_b, const Wrench& in_b) {
+  return {a_R_b * in_b.force, a_R_b * in_b.torque};
+}
 
 /// Power [W] that the robot delivers to its surroundings.
 inline double dot(const Wrench& wrench, const Twist& twist) {
