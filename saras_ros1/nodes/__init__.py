@@ -1,0 +1,1 @@
+"""One file a node; saras_ros1/scripts/ holds their executables."""
