@@ -1,0 +1,5 @@
+"""Kinematics: serial chains, the SARAS arm (``mesa``), the console's hand piece (``simball``)."""
+
+from saras._core.kinematics import Chain, Joint, JointType, RcmArm, RcmArmConfig
+
+__all__ = ["Chain", "Joint", "JointType", "RcmArm", "RcmArmConfig"]
