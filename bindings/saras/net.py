@@ -1,0 +1,35 @@
+"""Datagrams between a console and the platform (docs/protocols.md), and what a receiver needs around them.
+
+Pure: no sockets, no clocks. ``TouchballUp.decode(data)`` and ``packet.encode()`` refuse with
+``saras.ProtocolError`` what the other end would refuse; nothing half-decoded is ever handed out.
+"""
+
+from saras._core.net import (
+    ChannelState,
+    GuardState,
+    LinkAge,
+    PortLedger,
+    SequenceCounts,
+    SequenceFilter,
+    SimballJoints,
+    TouchballDown,
+    TouchballDownSide,
+    TouchballUp,
+    TouchballUpSide,
+    crc32,
+)
+
+__all__ = [
+    "ChannelState",
+    "GuardState",
+    "LinkAge",
+    "PortLedger",
+    "SequenceCounts",
+    "SequenceFilter",
+    "SimballJoints",
+    "TouchballDown",
+    "TouchballDownSide",
+    "TouchballUp",
+    "TouchballUpSide",
+    "crc32",
+]
