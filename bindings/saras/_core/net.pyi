@@ -1,0 +1,7 @@
+"""
+Datagram codecs
+"""
+
+from __future__ import annotations
+
+__all__: list[str] = list()
