@@ -1,6 +1,7 @@
 #include "law.hpp"
 #include "rooms.hpp"
 #include "saras/kinematics/rcm_arm.hpp"
+#include "saras/kinematics/simball_handle.hpp"
 
 namespace saras::bindings {
 namespace {
@@ -129,12 +130,49 @@ void bind_rcm_arm(py::module_& m) {
           py::arg("q"), "First joint beyond its limits with value and bounds; '' when none.");
 }
 
+void bind_simball_handle(py::module_& m) {
+  Struct<SimballHandleConfig>(m, "SimballHandleConfig", "Dimensions and limits of a hand piece.")
+      .field("handle_distance_m", &SimballHandleConfig::handle_distance_m, "pivot to handle at insertion = 0 [m]")
+      .field("lower", &SimballHandleConfig::lower, "(4,) lower limits [rad], insertion [m]")
+      .field("upper", &SimballHandleConfig::upper, "(4,) upper limits [rad], insertion [m]");
+  py::class_<SimballHandle>(m, "SimballHandle",
+                            "The console's hand piece. q = [yaw, pitch, roll, insertion] [rad], insertion [m];\n"
+                            "simball_base: origin in the pivot, z up; handle: +z along the shaft to the pivot.")
+      .def(py::init<SimballHandleConfig>(), py::arg("config") = SimballHandleConfig{})
+      .def_property_readonly("config", [](const SimballHandle& self) { return self.config(); })
+      .def_property_readonly(
+          "limits",
+          [](const SimballHandle& self) {
+            Eigen::Matrix<double, 4, 2> limits;
+            limits << self.config().lower, self.config().upper;
+            return limits;
+          },
+          "(4, 2) lower, upper [rad], insertion [m]")
+      .def_property_readonly("joint_names", [](const SimballHandle&) { return py::cast(simball::kJointNames); })
+      .def("forward", &SimballHandle::forward, py::arg("q"), "(4, 4) simball_T_handle.")
+      .def("jacobian", &SimballHandle::jacobian, py::arg("q"),
+           "(6, 4) twist of the handle in simball_base, linear first, from joint rates.")
+      .def(
+          "inverse", [](const SimballHandle& self, const Pose& pose) { return self.inverse(pose); },
+          py::arg("simball_T_handle"),
+          "(4,) joints of a (4, 4) pose, limits not applied; None when not above the pivot.")
+      .def(
+          "inverse_position",
+          [](const SimballHandle& self, const Vector3& point, double roll) { return self.inverse(point, roll); },
+          py::arg("handle_position"), py::arg("roll"),
+          "(4,) joints of a point (3,) [m] and roll [rad], limits not applied; None when not above the pivot.")
+      .def("clamp", &SimballHandle::clamp, py::arg("q"), "(4,) nearest joints inside the limits.")
+      .def("check_limits", &SimballHandle::check_limits, py::arg("q"),
+           "Raises KinematicsError naming the first joint beyond its limits, its value, the bounds.");
+}
+
 }  // namespace
 
 void bind_kinematics(py::module_& m) {
   bind_chain(m);
   bind_rcm_arm_config(m);
   bind_rcm_arm(m);
+  bind_simball_handle(m);
   m.attr("MESA_NOMINAL_RCM") = py::cast(Vector3(mesa::kNominalRcm.data()));
 }
 

@@ -1,5 +1,13 @@
 """Kinematics: serial chains, the SARAS arm (``mesa``), the console's hand piece (``simball``)."""
 
-from saras._core.kinematics import Chain, Joint, JointType, RcmArm, RcmArmConfig
+from saras._core.kinematics import (
+    Chain,
+    Joint,
+    JointType,
+    RcmArm,
+    RcmArmConfig,
+    SimballHandle,
+    SimballHandleConfig,
+)
 
-__all__ = ["Chain", "Joint", "JointType", "RcmArm", "RcmArmConfig"]
+__all__ = ["Chain", "Joint", "JointType", "RcmArm", "RcmArmConfig", "SimballHandle", "SimballHandleConfig"]
