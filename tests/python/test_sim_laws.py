@@ -40,3 +40,17 @@ def test_link_forgets_lost_payloads():
         link.send(i, i * 1.0)
         assert link.receive(i * 1.0) == []
     assert len(link._payloads) < 10
+
+
+def test_servo_arm_reaches_its_target():
+    arm = sim.ServoArm()
+    rcm = np.array([0.18, 0.0, -0.10])
+    target = rcm + [0.01, 0.02, -0.11]
+    for _ in range(1000):
+        out = arm.step(target, 0.3, rcm, [0, 0, 0], 1e-3, target_jaw=1.0)
+    np.testing.assert_allclose(out.base_T_tip[:3, 3], target, atol=1e-9)
+    assert out.rcm_deviation_m < 1e-9
+    assert out.jaw == 1.0
+    out = arm.step(target - [0, 0, 0.5], 0.3, rcm, [0, 0, 0], 1e-3)
+    assert out.status == saras.Status.LIMITED
+    assert "insertion" in out.violation

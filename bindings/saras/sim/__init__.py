@@ -1,6 +1,7 @@
 """Simulated arm, tissue, hand and network, and whole experiments without ROS."""
 
 from saras._core.sim import (
+    ArmMode,
     Channel,
     ChannelConfig,
     ChannelCounters,
@@ -8,6 +9,10 @@ from saras._core.sim import (
     OperatorConfig,
     OperatorOutput,
     OperatorState,
+    ServoArm,
+    ServoArmConfig,
+    ServoArmOutput,
+    ServoArmState,
     Tissue,
     TissueConfig,
     TissueOutput,
@@ -15,6 +20,7 @@ from saras._core.sim import (
 from saras.sim.link import Link
 
 __all__ = [
+    "ArmMode",
     "Channel",
     "ChannelConfig",
     "ChannelCounters",
@@ -23,6 +29,10 @@ __all__ = [
     "OperatorConfig",
     "OperatorOutput",
     "OperatorState",
+    "ServoArm",
+    "ServoArmConfig",
+    "ServoArmOutput",
+    "ServoArmState",
     "Tissue",
     "TissueConfig",
     "TissueOutput",
