@@ -1,7 +1,6 @@
 #include "saras/teleop/twist_estimator.hpp"
 
-#include <cmath>
-
+#include "saras/spatial/low_pass.hpp"
 #include "saras/spatial/rotation.hpp"
 #include "saras/spatial/validate.hpp"
 
@@ -32,9 +31,7 @@ TwistEstimatorOutput TwistEstimator::step(const TwistEstimatorInput& input, Seco
   }
   const Twist moved = displacement(state_.base_T_previous, input.base_T_body);
   output.twist = {moved.linear / dt, moved.angular / dt};
-  const double gain = 1.0 - std::exp(-2.0 * M_PI * config_.cutoff_hz * dt);
-  state_.twist_filtered.linear += gain * (output.twist.linear - state_.twist_filtered.linear);
-  state_.twist_filtered.angular += gain * (output.twist.angular - state_.twist_filtered.angular);
+  low_pass(state_.twist_filtered, output.twist, low_pass_gain(config_.cutoff_hz, dt));
   state_.base_T_previous = input.base_T_body;
   output.twist_filtered = state_.twist_filtered;
   return output;
