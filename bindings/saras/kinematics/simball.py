@@ -28,10 +28,10 @@ TOUCH_JOINT_NAMES = (
 )
 
 TOUCH_SHOULDER_HEIGHT_M = 0.12
-TOUCH_UPPER_ARM_M = 0.17
-TOUCH_FOREARM_M = 0.19
+TOUCH_UPPER_ARM_M = 0.18
+TOUCH_FOREARM_M = 0.20
 SIMBALL_T_TOUCH_BASE: Array = np.array(
-    [[-1.0, 0.0, 0.0, 0.24], [0.0, -1.0, 0.0, 0.0], [0.0, 0.0, 1.0, -0.06], [0.0, 0.0, 0.0, 1.0]]
+    [[-1.0, 0.0, 0.0, 0.20], [0.0, -1.0, 0.0, 0.0], [0.0, 0.0, 1.0, -0.06], [0.0, 0.0, 0.0, 1.0]]
 )
 """(4, 4) as in config/scene.yaml: the Touch stands behind the pivot and faces the operator."""
 
