@@ -1,6 +1,10 @@
 """The laws of bilateral teleoperation. Each has a Config, ``step(…)``, ``state`` and ``reset``."""
 
 from saras._core.teleop import (
+    DisturbanceObserver,
+    DisturbanceObserverConfig,
+    DisturbanceObserverOutput,
+    DisturbanceObserverState,
     EnergyTank,
     EnergyTankConfig,
     EnergyTankOutput,
@@ -30,6 +34,10 @@ from saras._core.teleop import (
 )
 
 __all__ = [
+    "DisturbanceObserver",
+    "DisturbanceObserverConfig",
+    "DisturbanceObserverOutput",
+    "DisturbanceObserverState",
     "EnergyTank",
     "EnergyTankConfig",
     "EnergyTankOutput",
