@@ -71,7 +71,8 @@ class TracedLaw:
     @property
     def info(self) -> str:
         """JSON for ``/laws/<name>/info``. It grows when an argument changes its shape: publish it (latched) again
-        whenever it differs from what was published last."""
+        whenever it differs from what was published last.
+        """
         return json.dumps({**self._description, "layouts": self._layouts})
 
     def _layout_index(self, layout: Layout) -> int:
@@ -91,8 +92,10 @@ def flatten(value: Any) -> Iterator[float]:
     """The numbers of a value in field order. None gives nothing."""
     if value is None:
         return
-    if isinstance(value, (bool, int, float, np.generic)):
+    if isinstance(value, (bool, int, float)):
         yield float(value)
+    elif isinstance(value, np.generic):
+        yield float(value.item())
     elif isinstance(value, np.ndarray):
         yield from value.ravel().astype(float).tolist()
     elif hasattr(value, "_fields"):
