@@ -101,12 +101,29 @@ def write_tank(bag: BagWriter, name: str, t: float, energy: float, sent: float, 
     topic = f"/{name}/state"
     granted = GRANTED_J if t >= 1.0 else 0.0
     bag.put(
-        topic, "saras_ros1/msg/TankState", t, header=bag.header(topic, t), seq=bag.seqs[topic], session=1, energy_J=energy,
-        minimum_J=MINIMUM_J, request_J=REQUEST_J, available_J=AVAILABLE_J, maximum_J=MAXIMUM_J,
-        reduction=float(np.clip((REQUEST_J - energy) / (REQUEST_J - MINIMUM_J), 0, 1)), scale=1.0,
-        damping=np.full(6, 1.0), work_out_J=granted + received - sent - energy, received_J=received, sent_J=sent,
-        vented_J=0.0, granted_J=granted, requesting=energy < REQUEST_J, has_room=True, status="OK",
-    )  # fmt: skip
+        topic,
+        "saras_ros1/msg/TankState",
+        t,
+        header=bag.header(topic, t),
+        seq=bag.seqs[topic],
+        session=1,
+        energy_J=energy,
+        minimum_J=MINIMUM_J,
+        request_J=REQUEST_J,
+        available_J=AVAILABLE_J,
+        maximum_J=MAXIMUM_J,
+        reduction=float(np.clip((REQUEST_J - energy) / (REQUEST_J - MINIMUM_J), 0, 1)),
+        scale=1.0,
+        damping=np.full(6, 1.0),
+        work_out_J=granted + received - sent - energy,
+        received_J=received,
+        sent_J=sent,
+        vented_J=0.0,
+        granted_J=granted,
+        requesting=energy < REQUEST_J,
+        has_room=True,
+        status="OK",
+    )
 
 
 def write_session(path: Path, duration_s: float = 12.0) -> Path:
@@ -135,9 +152,18 @@ def write_side(bag: BagWriter, side: str, t: float) -> None:
     state, reason, advice = channel_state(side, t)
     topic = f"/system/{side}/state"
     bag.put(
-        topic, "saras_ros1/msg/ChannelState", t, header=bag.header(topic, t), seq=bag.seqs[topic], side=side, state=state,
-        engagement=1, clutch=6.0 <= t < 7.0, reason=reason, advice=advice,
-    )  # fmt: skip
+        topic,
+        "saras_ros1/msg/ChannelState",
+        t,
+        header=bag.header(topic, t),
+        seq=bag.seqs[topic],
+        side=side,
+        state=state,
+        engagement=1,
+        clutch=6.0 <= t < 7.0,
+        reason=reason,
+        advice=advice,
+    )
     now, later = handle_position(t), handle_position(t - LAG_S)
     base = np.array([0.3, 0.0, -0.1])
     bag.pose(f"/touchball_{side}/pose", t, now, f"touchball_{side}/simball_base")

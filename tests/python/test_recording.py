@@ -7,8 +7,9 @@ import pytest
 
 pytest.importorskip("rosbags")
 
-import saras
 import synthetic_session as synthetic
+
+import saras
 from saras.recording import Session
 
 
@@ -91,7 +92,7 @@ def test_missing_foreign_empty_and_truncated_bags_are_refused(tmp_path):
     whole = synthetic.write_session(tmp_path / "whole.bag", duration_s=0.5).read_bytes()
     for size in range(20, len(whole), len(whole) // 23):
         (tmp_path / "cut.bag").write_bytes(whole[:size])
-        with pytest.raises(saras.Error, match="cut.bag"):
+        with pytest.raises(saras.Error, match=r"cut\.bag"):
             Session.open(tmp_path / "cut.bag")
 
 

@@ -1,0 +1,171 @@
+"""The tiles at the top of a report: each says what was measured and whether it is as it must be.
+
+A verdict that cannot be computed is ``unknown``; it never counts as good.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from saras.recording import Event, Session
+from saras.report import energy, timing, tracking
+from saras.report.timing import Latency, Rate
+from saras.report.tracking import Tracking
+
+TRACKING_RMS_MM = 1.0
+REMOTE_CENTRE_MM = 0.1
+RATE_HZ = 100.0
+RATE_SHARE = 0.98  #: of the nominal rate that counts as held
+LEDGER_RELATIVE = 1e-9
+SIDES = ("left", "right")
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """One tile. ``grade``: good, warning, bad, unknown."""
+
+    title: str
+    value: str
+    detail: str
+    grade: str
+
+
+@dataclass(frozen=True)
+class Findings:
+    """Everything that the report computes from a session, once."""
+
+    events: list[Event]
+    ledger: energy.Ledger | None
+    rates: list[tuple[str, str, Rate | None]]
+    latencies: dict[str, list[tuple[str, Latency | None]]]
+    tracking: dict[str, Tracking | None]
+    set_point_tracking: dict[str, Tracking | None]
+    states: dict[str, list[tuple[float, float, int]]]
+    verdicts: list[Verdict] = field(default_factory=list)
+
+
+def examine(session: Session) -> Findings:
+    """Computes all findings and the verdicts over them."""
+    grid = tracking.time_grid(session)
+    slave, set_point = {}, {}
+    for side in SIDES:
+        free = tracking.free_motion(session, side, grid)
+        master = session.console(side).tracked_pose
+        slave[side] = tracking.track(master, session.arm(f"mesa_{side}").ee_pose, free, grid)
+        set_point[side] = tracking.track(master, session.arm(f"mesa_{side}").set_point, free, grid)
+    rates = []
+    for node, name in timing.control_topics(session):
+        topic = session.topic(name)
+        rates.append((node, name, timing.rate(topic) if topic is not None else None))
+    latencies = {
+        side: [(name, timing.latency(session, name, source, result)) for name, source, result in timing.hops(side)]
+        for side in SIDES
+    }
+    states = {side: state_bands(session, side) for side in SIDES}
+    found = Findings(session.events, energy.ledger(session), rates, latencies, slave, set_point, states)
+    found.verdicts.extend(
+        [
+            _engaged(found),
+            _holds(found),
+            _energy(found),
+            _books(found),
+            *(_tracking(side, found.tracking[side]) for side in SIDES),
+            _rate(session, found),
+            _remote_centre(session),
+        ]
+    )
+    return found
+
+
+def state_bands(session: Session, side: str) -> list[tuple[float, float, int]]:
+    """(start, end, ChannelState) of each stretch of one state [s]."""
+    topic = session.console(side).state
+    if topic is None:
+        return []
+    state = topic["state"].astype(int)
+    starts = np.flatnonzero(np.diff(state, prepend=state[0] - 1) != 0)
+    ends = np.append(topic.t[starts[1:]], topic.t[-1])
+    return [(float(topic.t[i]), float(end), int(state[i])) for i, end in zip(starts, ends)]
+
+
+def _engaged(found: Findings) -> Verdict:
+    if not any(found.states.values()):
+        return Verdict("Engaged", "unknown", "channel states were not recorded", "unknown")
+    seconds = {side: sum(b - a for a, b, state in found.states[side] if state == 2) for side in SIDES}
+    detail = " · ".join(f"{side} {seconds[side]:.1f} s" for side in SIDES)
+    return Verdict("Engaged", f"{min(seconds.values()):.1f} s", detail, "good" if min(seconds.values()) > 0 else "bad")
+
+
+def _holds(found: Findings) -> Verdict:
+    if not all(found.states.values()):
+        return Verdict("HOLDs", "unknown", "a side's state was not recorded", "unknown")
+    holds = [(side, b - a) for side in SIDES for a, b, state in found.states[side] if state == 3]
+    detail = f"{sum(s for _, s in holds):.1f} s in all" if holds else "no side stopped"
+    return Verdict("HOLDs", str(len(holds)), detail, "bad" if holds else "good")
+
+
+def _energy(found: Findings) -> Verdict:
+    if found.ledger is None:
+        return Verdict("Lowest tank energy", "unknown", "no tank was recorded", "unknown")
+    charged = [a for a in found.ledger.accounts if np.isfinite(a.lowest_J)]
+    if not charged:
+        return Verdict("Lowest tank energy", "unknown", "no tank was ever charged", "unknown")
+    lowest = min(charged, key=lambda account: account.lowest_J)
+    if lowest.lowest_J < 0:
+        grade = "bad"
+    elif found.ledger.missing:
+        grade = "unknown"
+    else:
+        grade = "good" if lowest.lowest_J >= lowest.minimum_J else "warning"
+    detail = f"{lowest.name}, floor {lowest.minimum_J:.2f} J"
+    if found.ledger.missing:
+        detail += f"; not recorded: {', '.join(found.ledger.missing)}"
+    return Verdict("Lowest tank energy", f"{lowest.lowest_J:.3f} J", detail, grade)
+
+
+def _books(found: Findings) -> Verdict:
+    if found.ledger is None:
+        return Verdict("Energy ledger", "unknown", "no tank was recorded", "unknown")
+    residual, flight = found.ledger.residual_J, found.ledger.flight_J
+    bound = LEDGER_RELATIVE * found.ledger.scale_J
+    detail = f"worst residual, bound {bound:.0e} J; in flight " + ("unknown" if flight is None else f"{flight:.2g} J")
+    good = residual <= bound and (flight is None or flight >= -bound)
+    return Verdict("Energy ledger", f"{residual:.1e} J", detail, "good" if good else "bad")
+
+
+def _tracking(side: str, result: Tracking | None) -> Verdict:
+    title = f"Tracking {side}"
+    if result is None:
+        return Verdict(title, "unknown", "not enough free motion with full tanks", "unknown")
+    detail = (
+        f"RMS after lag {1e3 * result.lag_s:.0f} ms, scale {result.scale:.3f}, {result.seconds:.0f} s of free motion"
+    )
+    return Verdict(title, f"{result.rms_mm:.2f} mm", detail, "good" if result.rms_mm <= TRACKING_RMS_MM else "bad")
+
+
+def _rate(session: Session, found: Findings) -> Verdict:
+    nominal = float(session.info.get("rate_hz", RATE_HZ))
+    known = [(node, rate) for node, _, rate in found.rates if rate is not None]
+    if not known:
+        return Verdict("Node rate", "unknown", "no control topic was recorded", "unknown")
+    slowest, rate = min(known, key=lambda row: row[1].median_hz)
+    missing = len(found.rates) - len(known)
+    detail = f"slowest: {slowest}, p99 period {rate.period_p99_ms:.1f} ms, nominal {nominal:.0f} Hz"
+    grade = "good" if rate.median_hz >= RATE_SHARE * nominal else "bad"
+    if missing and grade == "good":
+        grade, detail = "unknown", f"{detail}; {missing} of {len(found.rates)} topics not recorded"
+    return Verdict("Node rate", f"{rate.median_hz:.1f} Hz", detail, grade)
+
+
+def _remote_centre(session: Session) -> Verdict:
+    worst = []
+    for side in SIDES:
+        result = tracking.remote_centre_deviation(session, f"mesa_{side}")
+        if result is None or not np.isfinite(result[1]).any():
+            return Verdict("Remote centre", "unknown", f"{side}: neither truth nor trocar recorded", "unknown")
+        worst.append((1e3 * float(np.nanmax(result[1])), side, result[2]))
+    deviation, side, source = max(worst)
+    good = deviation <= REMOTE_CENTRE_MM
+    return Verdict("Remote centre", f"{deviation:.3f} mm", f"worst: {side}, from {source}", "good" if good else "bad")
