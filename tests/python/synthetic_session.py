@@ -130,7 +130,7 @@ def write_session(path: Path, duration_s: float = 12.0) -> Path:
     """The whole session; returns the path."""
     bag = BagWriter(path)
     bag.text(
-        "/session/info", 0.0, json.dumps({"hosting": "separate", "operator": "normal", "seed": 7, "rate_hz": RATE_HZ})
+        "/saras/session", 0.0, json.dumps({"hosting": "separate", "operator": "normal", "seed": 7, "rate_hz": RATE_HZ})
     )
     for tick in range(int(duration_s * RATE_HZ)):
         t = tick / RATE_HZ

@@ -165,8 +165,8 @@ class Session:
 
     @property
     def info(self) -> dict[str, Any]:
-        """Facts that the platform published about itself (``/session/info``, JSON); empty when it did not."""
-        topic = self._bag.topic("/session/info")
+        """Facts that the platform published about itself (``/saras/session``, JSON); empty when it did not."""
+        topic = self._bag.topic("/saras/session")
         if topic is None:
             return {}
         try:

@@ -1,0 +1,266 @@
+"""script/demo: the whole platform against simulated consoles and arms, recorded, with a report at the end.
+
+Everything runs on loopback with ports of its own, so that several demos and other ROS systems do not meet.
+Exit code 0: both sides were engaged for the time asked, nothing stopped, bag and report are there.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import xml.etree.ElementTree
+from pathlib import Path
+
+from saras_ros1.processes import Child, free_ports
+
+ROOT = Path(__file__).resolve().parents[1]
+LAUNCH_FILE = ROOT / "launch" / "saras_mrs.launch"
+START_TIMEOUT_S = 90.0
+REQUIRED_ARGS = {"record", "operator", "bag"}
+
+
+class DemoError(RuntimeError):
+    """The demo cannot go on; the text is for the user."""
+
+
+def parse(argv: list[str] | None = None) -> argparse.Namespace:
+    """The command line."""
+    parser = argparse.ArgumentParser(
+        prog="script/demo", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("name", nargs="?", default="platform", choices=["platform"], help="which demo")
+    parser.add_argument("--headless", action="store_true", help="no rviz, also when there is a display")
+    parser.add_argument(
+        "--duration", type=float, metavar="S", help="seconds of engaged operation; default: until Ctrl-C"
+    )
+    parser.add_argument("--out", type=Path, metavar="DIR", help="where bag, report and logs go; default out/<date>")
+    parser.add_argument("--operator", choices=["weak", "normal", "firm"], default="normal", help="the simulated hand")
+    parser.add_argument("--motion", help="what the hands do: a name that the console knows, or a recorded motion file")
+    parser.add_argument("--seed", type=int, default=1, help="of everything random in the simulation")
+    arguments = parser.parse_args(argv)
+    if arguments.duration is not None and not 0 < arguments.duration <= 86400:
+        parser.error(f"--duration {arguments.duration:g}: must be in (0, 86400] seconds")
+    if arguments.motion and Path(arguments.motion).exists():
+        arguments.motion = str(Path(arguments.motion).resolve())
+    arguments.out = (arguments.out or ROOT / "out" / f"{datetime.datetime.now():%Y-%m-%d_%H-%M-%S}").resolve()
+    return arguments
+
+
+def launch_arguments(arguments: argparse.Namespace, out: Path) -> dict[str, str]:
+    """What the launch file is given: of all that a demo would say, the arguments that the file declares."""
+    (left, right), (up, down) = free_ports(tcp=2, udp=2)
+    wanted = {
+        "sim": "true",
+        "rviz": str(not arguments.headless and bool(os.environ.get("DISPLAY"))).lower(),
+        "record": "true",
+        "bag": str(out / "session.bag"),
+        "operator": arguments.operator,
+        "seed": str(arguments.seed),
+        "auto_engage": "true",
+        "trace_laws": "true",
+        "bind_port": str(up),
+        "console_port": str(down),
+        "arm_port_left": str(left),
+        "arm_port_right": str(right),
+    }
+    if arguments.motion:
+        wanted["motion"] = arguments.motion
+    declared = {arg.get("name") for arg in xml.etree.ElementTree.parse(LAUNCH_FILE).getroot().findall("arg")}
+    missing = (REQUIRED_ARGS | ({"motion"} if arguments.motion else set())) - declared
+    if missing:
+        raise DemoError(f"{LAUNCH_FILE.name} declares no argument {', '.join(sorted(missing))}")
+    return {name: value for name, value in wanted.items() if name in declared}
+
+
+def environment(out: Path) -> dict[str, str]:
+    """Own ROS master on loopback, logs under ``out``."""
+    ((port,), _) = free_ports(tcp=1)
+    env = dict(os.environ)
+    env.update(
+        ROS_MASTER_URI=f"http://127.0.0.1:{port}",
+        ROS_IP="127.0.0.1",
+        ROS_LOG_DIR=str(out / "log"),
+        PYTHONUNBUFFERED="1",
+    )
+    env.pop("ROS_HOSTNAME", None)
+    return env
+
+
+def wait_for_master(core: Child, timeout_s: float = 20.0) -> None:
+    """Returns when roscore answers."""
+    import rosgraph
+
+    end = time.monotonic() + timeout_s
+    while not rosgraph.is_master_online():
+        if core.exit_code is not None or time.monotonic() > end:
+            raise DemoError(f"roscore did not come up:\n{core.tail()}")
+        time.sleep(0.1)
+
+
+def publish_session_facts(arguments: argparse.Namespace) -> object:
+    """Latched /saras/session: what the report's header shows. Returns the publisher; keep it."""
+    import rospy
+    from std_msgs.msg import String
+
+    import saras
+
+    git = subprocess.run(
+        ["git", "-C", str(ROOT), "describe", "--always", "--dirty"], capture_output=True, text=True, check=False
+    )
+    facts = {
+        "hosting": "separate",
+        "operator": arguments.operator,
+        "motion": arguments.motion,
+        "seed": arguments.seed,
+        "sim": True,
+        "saras": saras.__version__,
+        "git": git.stdout.strip() or None,
+    }
+    publisher = rospy.Publisher("/saras/session", String, queue_size=1, latch=True)
+    publisher.publish(json.dumps({key: value for key, value in facts.items() if value is not None}))
+    return publisher
+
+
+def operate(arguments: argparse.Namespace, platform: Child) -> None:
+    """Shows the live table until the time is over or Ctrl-C; DemoError when the platform ends or never engages."""
+    from rich.console import Console
+    from rich.live import Live
+
+    from saras_ros1.msg import ChannelState
+    from saras_ros1.status import Status
+
+    status = Status()
+    console = Console()
+    live = Live(console=console, auto_refresh=False) if console.is_terminal else None
+    started = time.monotonic()
+    engaged_at: float | None = None
+    said_at = 0.0
+    if live is not None:
+        live.start()
+    try:
+        while True:
+            now = time.monotonic()
+            states = status.states().values()
+            if engaged_at is None and all(
+                state is not None and state.state == ChannelState.ENGAGED for state in states
+            ):
+                engaged_at = now
+            if platform.exit_code is not None:
+                raise DemoError(f"the platform ended by itself (code {platform.exit_code}):\n{platform.tail()}")
+            if engaged_at is None and now - started > START_TIMEOUT_S:
+                raise DemoError(f"not engaged within {START_TIMEOUT_S:.0f} s: {status.line()}")
+            if engaged_at is not None and arguments.duration is not None and now - engaged_at >= arguments.duration:
+                return
+            title = (
+                "starting" if engaged_at is None else f"engaged {now - engaged_at:.0f} s of {arguments.duration or '∞'}"
+            )
+            if live is not None:
+                live.update(status.table(f"{title}   (Ctrl-C ends)"), refresh=True)
+            elif now - said_at >= 5.0:
+                said_at = now
+                print(f"[demo] {title}: {status.line()}", flush=True)
+            time.sleep(0.25)
+    except KeyboardInterrupt:
+        print("[demo] interrupted: stopping", flush=True)
+    finally:
+        if live is not None:
+            live.stop()
+
+
+def close_bag(out: Path, patience_s: float = 15.0) -> None:
+    """Ends the recorder before the rest: nodes that stop one by one would be recorded as faults."""
+    import rosnode
+
+    recorders = [name for name in rosnode.get_node_names() if "record" in name]
+    rosnode.kill_nodes(recorders)
+    end = time.monotonic() + patience_s
+    while list(out.glob("*.bag.active")) and time.monotonic() < end:
+        time.sleep(0.1)
+
+
+def run_platform(arguments: argparse.Namespace, out: Path) -> None:
+    """Roscore and the launch file, for as long as operate() says; all processes are gone afterwards."""
+    env = environment(out)
+    # rospy and rosgraph in this process read the same variables.
+    os.environ.update({key: env[key] for key in ("ROS_MASTER_URI", "ROS_IP", "ROS_LOG_DIR")})
+    os.environ.pop("ROS_HOSTNAME", None)
+    master_port = env["ROS_MASTER_URI"].rsplit(":", 1)[1]
+    with Child("roscore", ["roscore", "-p", master_port], out / "log" / "roscore.log", env) as core:
+        wait_for_master(core)
+        import rospy
+
+        rospy.init_node("demo", disable_signals=True)
+        facts = publish_session_facts(arguments)
+        given = [f"{name}:={value}" for name, value in launch_arguments(arguments, out).items()]
+        command = ["roslaunch", str(LAUNCH_FILE), *given]
+        print(f"[demo] ROS_MASTER_URI={env['ROS_MASTER_URI']}  {' '.join(command)}", flush=True)
+        with Child("roslaunch", command, out / "log" / "roslaunch.log", env) as platform:
+            operate(arguments, platform)
+            close_bag(out)
+        del facts
+        rospy.signal_shutdown("demo over")
+
+
+def conclude(arguments: argparse.Namespace, out: Path) -> list[str]:
+    """Checks the bag and writes the report; returns what went wrong."""
+    from saras import Error
+    from saras.report import write_report
+
+    bags = sorted(out.glob("*.bag"))
+    if not bags:
+        active = ", ".join(str(path) for path in out.glob("*.bag.active"))
+        return [f"no bag in {out}" + (f"; the recorder did not close {active}" if active else "")]
+    report = out / "report.html"
+    try:
+        found = write_report(bags[0], report)
+    except Error as error:
+        return [str(error)]
+    problems = []
+    for verdict in found.verdicts:
+        print(f"[demo] {verdict.grade:>8}  {verdict.title}: {verdict.value} ({verdict.detail})")
+    for side, bands in found.states.items():
+        if not any(state == 2 for _, _, state in bands):
+            problems.append(f"{side} side was never engaged")
+        problems += [f"{side} side: HOLD at {start:.2f} s" for start, _, state in bands if state == 3]
+    log = (out / "log" / "roslaunch.log").read_text(encoding="utf-8", errors="replace")
+    problems += [line.strip() for line in log.splitlines() if "process has died" in line]
+    print(f"[demo] report {report}\n[demo] bag    {bags[0]}")
+    return problems
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Exit code: 0 all well, 1 something was not, 2 wrong arguments."""
+    arguments = parse(argv)
+    out: Path = arguments.out
+    if shutil.which("roslaunch") is None:
+        print("[demo] roslaunch is not on PATH: run script/bootstrap and source devel/setup.bash", file=sys.stderr)
+        return 1
+    if list(out.glob("*.bag*")):
+        print(f"[demo] {out} holds a recording already: choose another --out", file=sys.stderr)
+        return 2
+    out.mkdir(parents=True, exist_ok=True)
+    # SIGTERM ends it like Ctrl-C: children are stopped, the report is written.
+    signal.signal(signal.SIGTERM, lambda *_: signal.raise_signal(signal.SIGINT))
+    problems: list[str] = []
+    try:
+        run_platform(arguments, out)
+    except KeyboardInterrupt:
+        problems.append("interrupted before the platform ran")
+    except DemoError as error:
+        problems.append(str(error))
+    problems += conclude(arguments, out)
+    for problem in problems:
+        print(f"[demo] PROBLEM {problem}", file=sys.stderr)
+    print(f"[demo] {'ended with problems' if problems else 'all well'}: {out}", flush=True)
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,127 @@
+"""The live table: both sides, tanks, nodes. Values are drawn from the last messages; old ones are shown as unknown."""
+
+from __future__ import annotations
+
+import threading
+import time
+from typing import Any
+
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray
+from rich.table import Table
+from rich.text import Text
+
+from saras_ros1.msg import ChannelState, TankState
+
+SIDES = ("left", "right")
+TANKS = ("tank_master", "tank_slave", "port_guard_left", "port_guard_right")
+STALE_S = 1.0
+DIAGNOSTICS_STALE_S = 3.0
+STATE_NAMES = {0: "WAITING", 1: "READY", 2: "ENGAGED", 3: "HOLD"}
+_STATE_STYLE = {0: "yellow", 1: "cyan", 2: "bold green", 3: "bold white on red"}
+_LEVEL_STYLE = {0: "green", 1: "yellow", 2: "red", 3: "magenta"}
+UNKNOWN = Text("unknown", style="dim italic")
+
+
+class Latest:
+    """The newest message of a topic. It is decoded when looked at, not at 100 Hz."""
+
+    def __init__(self, topic: str, message_class: type) -> None:
+        self._class = message_class
+        self._raw: bytes | None = None
+        self._at = 0.0
+        rospy.Subscriber(topic, rospy.AnyMsg, self._on_message, queue_size=1, tcp_nodelay=True)
+
+    def _on_message(self, message: rospy.AnyMsg) -> None:
+        self._raw, self._at = message._buff, time.monotonic()
+
+    def value(self, stale_s: float = STALE_S) -> Any | None:
+        """The message, or None when there was none within stale_s."""
+        raw = self._raw
+        if raw is None or time.monotonic() - self._at > stale_s:
+            return None
+        return self._class().deserialize(raw)
+
+
+class Status:
+    """Subscribes to what the table shows; needs an initialised rospy node."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._nodes: dict[str, tuple[float, Any]] = {}
+        self.sides = {side: Latest(f"/system/{side}/state", ChannelState) for side in SIDES}
+        self.tanks = {name: Latest(f"/{name}/state", TankState) for name in TANKS}
+        rospy.Subscriber("/diagnostics", DiagnosticArray, self._on_diagnostics, queue_size=50)
+
+    def _on_diagnostics(self, message: DiagnosticArray) -> None:
+        with self._lock:
+            for status in message.status:
+                self._nodes[status.name] = (time.monotonic(), status)
+
+    def states(self) -> dict[str, Any | None]:
+        """ChannelState of each side, None where unknown."""
+        return {side: latest.value() for side, latest in self.sides.items()}
+
+    def table(self, title: str = "") -> Table:
+        """All of it, for rich."""
+        grid = Table.grid(padding=(0, 3))
+        grid.add_row(self._sides_table(), self._tanks_table())
+        outer = Table.grid()
+        if title:
+            outer.add_row(Text(title, style="bold"))
+        outer.add_row(grid)
+        outer.add_row(self._nodes_table())
+        return outer
+
+    def line(self) -> str:
+        """One line of plain text, for logs."""
+        parts = []
+        for side, state in self.states().items():
+            name = "unknown" if state is None else STATE_NAMES.get(state.state, "?")
+            reason = f" ({state.reason})" if state is not None and state.reason else ""
+            parts.append(f"{side} {name}{reason}")
+        for name, latest in self.tanks.items():
+            tank = latest.value()
+            parts.append(f"{name} " + ("unknown" if tank is None else f"{tank.energy_J:.3f} J"))
+        return " | ".join(parts)
+
+    def _sides_table(self) -> Table:
+        table = Table("side", "state", "clutch", "what is wrong, what to do", title="sides", title_justify="left")
+        for side, state in self.states().items():
+            if state is None:
+                table.add_row(side, UNKNOWN, UNKNOWN, "no state for a second")
+                continue
+            name = Text(STATE_NAMES.get(state.state, "?"), style=_STATE_STYLE.get(state.state, ""))
+            words = " → ".join(part for part in (state.reason, state.advice) if part)
+            table.add_row(side, name, "pressed" if state.clutch else "", words)
+        return table
+
+    def _tanks_table(self) -> Table:
+        table = Table("tank", "energy [J]", "", "reduction", "out [J]", "status", title="tanks", title_justify="left")
+        for name, latest in self.tanks.items():
+            tank = latest.value()
+            if tank is None:
+                table.add_row(name, UNKNOWN, "", UNKNOWN, UNKNOWN, UNKNOWN)
+                continue
+            style = (
+                "green" if tank.energy_J >= tank.request_J else "yellow" if tank.energy_J >= tank.minimum_J else "red"
+            )
+            share = tank.energy_J / tank.maximum_J if tank.maximum_J > 0 else 0.0
+            bar = Text("█" * round(12 * min(max(share, 0.0), 1.0)), style=style)
+            numbers = f"{tank.energy_J:.3f}", bar, f"{tank.reduction:.2f}", f"{tank.work_out_J:+.3f}"
+            table.add_row(name, *numbers, tank.status)
+        return table
+
+    def _nodes_table(self) -> Table:
+        table = Table("node", "rate [Hz]", "worst step [ms]", "message", title="nodes", title_justify="left")
+        with self._lock:
+            nodes = sorted(self._nodes.items())
+        now = time.monotonic()
+        for name, (at, status) in nodes:
+            if now - at > DIAGNOSTICS_STALE_S:
+                table.add_row(name, UNKNOWN, UNKNOWN, Text(f"silent for {now - at:.0f} s", style="magenta"))
+                continue
+            values = {pair.key: pair.value for pair in status.values}
+            rate, worst = values.get("rate_hz", ""), values.get("step_worst_ms", "")
+            table.add_row(name, rate, worst, Text(status.message, style=_LEVEL_STYLE.get(status.level, "")))
+        return table
