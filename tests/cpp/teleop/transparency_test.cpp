@@ -1,0 +1,319 @@
+#include "saras/teleop/transparency.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "saras/spatial/errors.hpp"
+#include "saras/spatial/rotation.hpp"
+#include "support/random_values.hpp"
+
+namespace saras {
+namespace {
+
+using test::kNan;
+using test::RandomValues;
+
+constexpr Seconds kDt = 0.01;
+
+/// Tip 0.1 m below a trocar at the origin, shaft along the tip's z.
+Pose hanging_tip() { return {rotation_exp(Vector3(M_PI, 0, 0)), Vector3(0, 0, -0.1)}; }
+
+TransparencyInput at_rest() {
+  TransparencyInput input;
+  input.slave_pose = hanging_tip();
+  return input;
+}
+
+/// Referenced at rest and with the ramp complete.
+Transparency engaged(const TransparencyConfig& config) {
+  Transparency law(config);
+  for (int i = 0; i < 15; ++i) {
+    law.step(at_rest(), kDt);
+  }
+  return law;
+}
+
+TransparencyConfig without_limits() {
+  TransparencyConfig config;
+  config.force_limit_N = 1e6;
+  config.torque_limit_Nm = 1e6;
+  config.drift_limit_m_s = 1e6;
+  config.pivoted = false;
+  return config;
+}
+
+TEST(Transparency, ScaleEntersTheError) {
+  auto config = without_limits();
+  config.scale = 0.25;
+  auto law = engaged(config);
+  auto input = at_rest();
+  input.master_pose.translation.x() = 0.04;
+  input.slave_pose.translation.x() = 0.01;  // exactly where 0.25 puts it
+  const auto output = law.step(input, kDt);
+  EXPECT_LT(output.error.norm(), 1e-15);
+  EXPECT_LT(to_vector(output.desired_wrench).norm(), 1e-12);
+}
+
+TEST(Transparency, AngularIsNotScaled) {
+  auto law = engaged(without_limits());
+  auto input = at_rest();
+  input.master_twist = {Vector3(0.1, 0.2, 0.3), Vector3(1, 2, 3)};
+  const auto output = law.step(input, kDt);
+  EXPECT_LT((output.desired_twist.linear - 0.5 * input.master_twist.linear).norm(), 1e-15);
+  EXPECT_LT((output.desired_twist.angular - input.master_twist.angular).norm(), 1e-15);
+}
+
+TEST(Transparency, NewDataFlagsAreReset) {
+  Transparency law({});
+  auto input = at_rest();
+  input.stale = true;
+  EXPECT_EQ(law.step(input, kDt).status, Status::kWaiting);
+  EXPECT_FALSE(law.state().has_reference);
+  law = engaged({});
+  law.reset();
+  input.master_pose.translation.x() = 1.0;
+  EXPECT_EQ(law.step(input, kDt).status, Status::kWaiting);  // still old data: no reference from it
+  input.stale = false;
+  EXPECT_EQ(law.step(input, kDt).status, Status::kWaiting);
+  EXPECT_EQ(law.step(input, kDt).status, Status::kOk);
+  EXPECT_EQ(law.state().master_reference.translation.x(), 1.0);
+}
+
+TEST(Transparency, WaitsUntilBothPosesAreGood) {
+  Transparency law({});
+  auto input = at_rest();
+  input.slave_pose.translation.x() = kNan;
+  for (int i = 0; i < 3; ++i) {
+    const auto output = law.step(input, kDt);
+    EXPECT_EQ(output.status, Status::kWaiting);
+    EXPECT_EQ(to_vector(output.desired_twist).norm() + to_vector(output.desired_wrench).norm(), 0.0);
+  }
+  EXPECT_EQ(law.step(at_rest(), kDt).status, Status::kWaiting);
+  EXPECT_EQ(law.step(at_rest(), kDt).status, Status::kOk);
+}
+
+TEST(Transparency, PositionPositionPullsTheHandTowardsTheSlave) {
+  auto law = engaged(without_limits());
+  auto input = at_rest();
+  input.master_pose.translation.x() = 0.02;  // hand ahead, slave held: 10 slave mm behind
+  input.master_twist.linear.x() = 0.1;
+  const auto output = law.step(input, kDt);
+  EXPECT_NEAR(output.desired_wrench.force.x(), 200.0 * -0.01 + 2.0 * -0.05, 1e-12);
+  EXPECT_NEAR(output.desired_twist.linear.x(), 0.5 * 0.1 + 2.0 * 0.01, 1e-12);
+}
+
+TEST(Transparency, PositionForceIsTheReactionOfTheTissue) {
+  auto config = without_limits();
+  config.mode = TransparencyMode::kPositionForce;
+  auto law = engaged(config);
+  auto input = at_rest();
+  input.master_pose.translation.x() = 0.02;
+  input.tissue_wrench.force = Vector3(1, 2, -3);
+  EXPECT_LT((law.step(input, kDt).desired_wrench.force - Vector3(-0.2, -0.4, 0.6)).norm(), 1e-12);
+}
+
+TEST(Transparency, FourChannelIsTheSumOfBoth) {
+  RandomValues random(1);
+  auto config = without_limits();
+  config.rotation_stiffness_Nm_rad = 0.3;
+  config.rotation_damping_Nm_s_rad = 0.02;
+  config.torque_scale = 0.1;
+  Wrench parts[3];
+  TransparencyInput input;
+  input.master_pose = random.pose(0.1);
+  input.slave_pose = random.pose(0.1);
+  input.master_twist = random.twist(0.1, 1.0);
+  input.slave_twist = random.twist(0.1, 1.0);
+  input.tissue_wrench = random.wrench(2.0, 0.1);
+  for (int mode = 0; mode < 3; ++mode) {
+    config.mode = static_cast<TransparencyMode>(mode);
+    auto law = engaged(config);
+    parts[mode] = law.step(input, kDt).desired_wrench;
+  }
+  EXPECT_LT((to_vector(parts[0]) + to_vector(parts[1]) - to_vector(parts[2])).norm(), 1e-12);
+}
+
+TEST(Transparency, RotationErrorIsZeroForTheSameTurnAndHasNoGainByDefault) {
+  auto config = without_limits();
+  auto law = engaged(config);
+  auto input = at_rest();
+  const Quaternion turn = rotation_exp(Vector3(0.3, -0.2, 0.5));
+  input.master_pose.rotation = turn * input.master_pose.rotation;
+  EXPECT_LT((law.step(input, kDt).error.tail<3>() + Vector3(0.3, -0.2, 0.5)).norm(), 1e-12);
+  EXPECT_EQ(law.step(input, kDt).desired_wrench.torque.norm(), 0.0);
+  input.slave_pose.rotation = turn * input.slave_pose.rotation;
+  input.slave_pose.rotation.coeffs() *= -1.0;
+  EXPECT_LT(law.step(input, kDt).error.tail<3>().norm(), 1e-12);
+}
+
+TEST(Transparency, ForceIsLimitedInNormAndKeepsItsDirection) {
+  auto law = engaged({});
+  auto input = at_rest();
+  input.master_pose.translation = Vector3(0.3, -0.4, 0.0);
+  const auto output = law.step(input, kDt);
+  EXPECT_EQ(output.status, Status::kLimited);
+  EXPECT_LT((output.desired_wrench.force - 3.3 * Vector3(-0.6, 0.8, 0.0)).norm(), 1e-12);
+}
+
+TEST(Transparency, DriftIsRemovedAtNoMoreThanItsLimit) {
+  auto config = without_limits();
+  config.drift_limit_m_s = 0.02;
+  auto law = engaged(config);
+  auto input = at_rest();
+  for (const double offset : {0.001, 0.009, 0.05, 1.0}) {
+    input.slave_pose.translation = hanging_tip().translation + Vector3(0, offset, 0);
+    const Vector3 velocity = law.step(input, kDt).desired_twist.linear;
+    EXPECT_NEAR(velocity.y(), -std::min(2.0 * offset, 0.02), 1e-12);
+  }
+}
+
+TEST(Transparency, ForceRampsInOverItsTimeAfterEngagement) {
+  Transparency law(without_limits());
+  auto input = at_rest();
+  law.step(input, kDt);
+  input.master_pose.translation.x() = 0.02;
+  for (int i = 1; i <= 15; ++i) {
+    const double expected = -2.0 * std::min(1.0, i * kDt / 0.1);
+    EXPECT_NEAR(law.step(input, kDt).desired_wrench.force.x(), expected, 1e-12);
+  }
+}
+
+TEST(Transparency, ClutchStopsTheSlaveFadesTheForceAndReleasesWithoutStep) {
+  auto law = engaged(without_limits());
+  auto input = at_rest();
+  input.master_pose.translation.x() = 0.02;
+  input.master_twist.linear.x() = 0.2;
+  const Wrench before = law.step(input, kDt).desired_wrench;
+  input.clutch = true;
+  input.master_twist = {};
+  double last = before.force.norm();
+  for (int i = 0; i < 12; ++i) {
+    const auto output = law.step(input, kDt);
+    EXPECT_EQ(output.status, Status::kOk);
+    EXPECT_EQ(to_vector(output.desired_twist), Vector6::Zero());
+    const double force = output.desired_wrench.force.norm();
+    EXPECT_LE(force, last);
+    EXPECT_LE(last - force, before.force.norm() * kDt / 0.1 + 1e-12);
+    last = force;
+  }
+  EXPECT_EQ(last, 0.0);
+  input.clutch = false;
+  const auto output = law.step(input, kDt);
+  EXPECT_EQ(output.error, Vector6::Zero());
+  EXPECT_EQ(to_vector(output.desired_twist), Vector6::Zero());
+  EXPECT_EQ(to_vector(output.desired_wrench), Vector6::Zero());
+}
+
+TEST(Transparency, StaleInputStopsTheSlaveAndFadesTheForce) {
+  auto law = engaged(without_limits());
+  auto input = at_rest();
+  input.master_pose.translation.x() = 0.02;
+  input.master_twist.linear.x() = 0.2;
+  const double before = law.step(input, kDt).desired_wrench.force.norm();
+  input.stale = true;
+  for (int i = 1; i <= 12; ++i) {
+    const auto output = law.step(input, kDt);
+    EXPECT_EQ(output.status, Status::kStale);
+    EXPECT_EQ(to_vector(output.desired_twist), Vector6::Zero());
+    EXPECT_NEAR(output.desired_wrench.force.norm(), before * std::max(0.0, 1.0 - i * kDt / 0.1), 1e-12);
+  }
+  EXPECT_TRUE(law.state().has_reference);
+}
+
+TEST(Transparency, TimeStepThatIsNoneGivesZero) {
+  auto law = engaged(without_limits());
+  auto input = at_rest();
+  input.master_pose.translation.x() = 0.02;
+  input.master_twist.linear.x() = 0.2;
+  for (const Seconds dt : {0.0, -kDt, kNan, 0.5}) {
+    const auto output = law.step(input, dt);
+    EXPECT_EQ(output.status, Status::kInvalidTimeStep);
+    EXPECT_EQ(to_vector(output.desired_twist).norm() + to_vector(output.desired_wrench).norm(), 0.0);
+  }
+}
+
+TEST(Transparency, ForceModeWithoutContactForceIsRefusedAndMotionGoesOn) {
+  auto config = without_limits();
+  config.mode = TransparencyMode::kPositionForce;
+  auto law = engaged(config);
+  auto input = at_rest();
+  input.master_twist.linear.x() = 0.2;
+  input.tissue_wrench.force.setConstant(kNan);
+  const auto output = law.step(input, kDt);
+  EXPECT_EQ(output.status, Status::kInvalidInput);
+  EXPECT_EQ(to_vector(output.desired_wrench), Vector6::Zero());
+  EXPECT_NEAR(output.desired_twist.linear.x(), 0.1, 1e-12);
+  config.mode = TransparencyMode::kPositionPosition;
+  auto without_force = engaged(config);
+  EXPECT_EQ(without_force.step(input, kDt).status, Status::kOk);
+}
+
+TEST(Transparency, ProjectionKeepsTheTrocarStillTheTipOnCourseAndTheRoll) {
+  RandomValues random(2);
+  for (int i = 0; i < 5000; ++i) {
+    const Vector3 rcm = random.vector(0.2);
+    Pose tip = random.pose(0.1);
+    const double insertion = random.uniform(0.011, 0.2);
+    const Vector3 shaft = tip.rotation * Vector3::UnitZ();
+    tip.translation = rcm + insertion * shaft;
+    const Twist wanted = random.twist(0.1, 1.0);
+    const Twist done = project_on_pivot(wanted, tip, rcm, 0.01);
+    EXPECT_LT((done.linear - wanted.linear).norm(), 1e-15);
+    EXPECT_NEAR(done.angular.dot(shaft), wanted.angular.dot(shaft), 1e-12);
+    // The shaft's material point in the trocar moves along the shaft only.
+    const Vector3 at_trocar = done.linear + done.angular.cross(rcm - tip.translation);
+    EXPECT_LT(at_trocar.cross(shaft).norm(), 1e-12);
+  }
+}
+
+TEST(Transparency, ProjectionStaysBoundedWithTheTipInTheTrocar) {
+  const Twist wanted{Vector3(0.1, 0, 0), Vector3(0, 0, 1)};
+  for (const double insertion : {0.0, 1e-12, 1e-5, 1e-3}) {
+    const Pose tip{hanging_tip().rotation, Vector3(0, 0, -insertion)};
+    const Twist done = project_on_pivot(wanted, tip, Vector3::Zero(), 0.01);
+    EXPECT_TRUE(is_finite(done));
+    EXPECT_LE(done.angular.norm(), 0.1 / 0.01 + 1.0);
+    EXPECT_NEAR(done.angular.z(), 1.0, 1e-12);
+  }
+}
+
+TEST(Transparency, AnySequenceOfFaultsStaysFiniteAndBounded) {
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    RandomValues random(seed);
+    TransparencyConfig config;
+    config.mode = static_cast<TransparencyMode>(seed % 3);
+    Transparency law(config);
+    Wrench previous;
+    for (int i = 0; i < 100; ++i) {
+      TransparencyInput input{random.pose(0.1),       random.twist(0.5, 2.0), random.pose(0.1),
+                              random.twist(0.5, 2.0), random.wrench(5, 0.1),  random.vector(0.1),
+                              random.chance(0.2),     random.chance(0.1),     {}};
+      if (random.chance(0.3)) {
+        double* fields[] = {&input.master_pose.translation.x(), &input.master_twist.angular.y(),
+                            &input.slave_pose.rotation.w(),     &input.slave_twist.linear.z(),
+                            &input.tissue_wrench.force.x(),     &input.rcm.y()};
+        *fields[static_cast<int>(random.uniform(0, 6))] = random.chance(0.5) ? kNan : 1e308;
+      }
+      const double dts[] = {kDt, kDt, kDt, kDt, 0.0, kNan, 3.0};
+      const auto output = law.step(input, dts[static_cast<int>(random.uniform(0, 7))]);
+      ASSERT_TRUE(is_finite(output.desired_wrench) && is_finite(output.desired_twist) && output.error.allFinite());
+      EXPECT_LE(output.desired_wrench.force.norm(), config.force_limit_N * (1 + 1e-12));
+      EXPECT_LE(output.desired_wrench.torque.norm(), config.torque_limit_Nm * (1 + 1e-12));
+    }
+  }
+}
+
+TEST(Transparency, RefusesBadConfiguration) {
+  for (const double bad : {0.0, -0.5, 11.0, kNan}) {
+    TransparencyConfig config;
+    config.scale = bad;
+    EXPECT_THROW(Transparency{config}, ConfigError);
+  }
+  TransparencyConfig config;
+  config.damping_N_s_m = -1.0;  // damping of the wrong sign
+  EXPECT_THROW(Transparency{config}, ConfigError);
+}
+
+}  // namespace
+}  // namespace saras
