@@ -12,7 +12,7 @@ from typing import Callable
 
 import numpy as np
 import rospy
-from geometry_msgs.msg import PoseStamped, TransformStamped, TwistStamped, WrenchStamped
+from geometry_msgs.msg import PointStamped, PoseStamped, TransformStamped, TwistStamped, WrenchStamped
 
 QUATERNION_NORM_TOLERANCE = 1e-3
 
@@ -87,6 +87,14 @@ def twist(message: TwistStamped) -> np.ndarray:
 def wrench(message: WrenchStamped) -> np.ndarray:
     """(6,) [N, N m] in frame_id."""
     return _six(message.wrench.force, message.wrench.torque, "wrench")
+
+
+def point(message: PointStamped) -> np.ndarray:
+    """(3,) [m] in frame_id."""
+    values = (message.point.x, message.point.y, message.point.z)
+    if not math.isfinite(sum(values)):
+        raise ValueError(f"point {values} is not finite")
+    return np.array(values)
 
 
 def positions(message) -> np.ndarray:

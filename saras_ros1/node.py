@@ -32,6 +32,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from saras import ConfigError, Error
 
 from saras_ros1.inputs import Input, Loop, Tick
+from saras_ros1.law_publisher import PublishedLaw
 from saras_ros1.params import Params
 
 __all__ = ["Input", "Loop", "Node", "StartupError", "Tick", "run"]
@@ -90,6 +91,10 @@ class Node:
         loop = Loop(step, primaries, period_s, self.lock)
         self.loops.append(loop)
         return loop
+
+    def law(self, name: str, law_class: type, *args: Any) -> Any:
+        """Builds a law; its step takes keywords only. With /saras/trace_laws each step goes out on /laws/<name>."""
+        return PublishedLaw(name, law_class, *args) if rospy.get_param("/saras/trace_laws", False) else law_class(*args)
 
     def every(self, period_s: float, callback: Callable[[], None]) -> None:
         """Calls back each period from a thread of its own, without the lock: for displays and reports, not for laws."""

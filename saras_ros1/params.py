@@ -86,14 +86,17 @@ class Params:
         self._sections.append(child)
         return child
 
-    def build(self, config_class: type, name: str) -> Any:
-        """A law's Config from the nested namespace `name`: each of its fields, no other."""
+    def build(self, config_class: type, name: str, **given: Any) -> Any:
+        """A law's Config from the nested namespace `name`: each of its fields, no other.
+
+        given: fields that the node knows itself and that must not stand in the file (frames, mostly).
+        """
         section = self.section(name)
         template = config_class()
-        fields = {field: section._field(field, getattr(template, field)) for field in config_class._fields}
+        fields = {f: section._field(f, getattr(template, f)) for f in config_class._fields if f not in given}
         section.finish()
         try:
-            return config_class(**fields)
+            return config_class(**fields, **given)
         except ConfigError as error:
             raise ConfigError(f"{self._where}/{name}: {error}") from None
 

@@ -1,0 +1,125 @@
+"""What tank_master and tank_slave share: the law, the ledgers with each peer, messages."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import numpy as np
+import rospy
+from saras.teleop import EnergyTank, EnergyTankConfig, LedgerReceiver, LedgerSender
+
+from saras_ros1.inputs import Input
+from saras_ros1.msg import TankExchange, TankState
+from saras_ros1.node import Node
+
+
+def new_session() -> int:
+    """Larger for every restart, also over a reboot."""
+    return time.time_ns()
+
+
+def read_exchange(message: TankExchange) -> TankExchange:
+    """Refuses totals that are no energy."""
+    if not (np.isfinite(message.sent_J) and message.sent_J >= 0.0):
+        raise ValueError(f"sent_J {message.sent_J}: must be finite and >= 0")
+    return message
+
+
+class Peer:
+    """The ledgers with one other tank. A silent peer asks for nothing and has no room."""
+
+    def __init__(self, node: Node, incoming: str, outgoing: str, session: int, timeout_s: float) -> None:
+        self._sender, self._receiver = LedgerSender(session), LedgerReceiver()
+        self._input = node.input(incoming, TankExchange, read_exchange, timeout_s=timeout_s)
+        self._input.listeners.append(self._on_exchange)
+        self._output = node.output(outgoing, TankExchange)
+        self._credit_J = 0.0
+
+    def _on_exchange(self, source: Input) -> None:
+        message = source.message
+        self._credit_J += self._receiver.credit(message.session, message.seq, message.sent_J)
+
+    def take_credit(self) -> float:
+        """Joules that came since the last call."""
+        credit, self._credit_J = self._credit_J, 0.0
+        return credit
+
+    @property
+    def requesting(self) -> bool:
+        """Whether it asks for energy now."""
+        return self._input.fresh and self._input.message.requesting
+
+    @property
+    def has_room(self) -> bool:
+        """Whether it can take overflow now."""
+        return self._input.fresh and self._input.message.has_room
+
+    def send(self, energy_J: float, out: Any, stamp: rospy.Time) -> None:
+        """Adds energy to what this peer was sent, and tells it the sum."""
+        self._sender.send(energy_J)
+        session, seq, sent_J = self._sender.next()
+        message = TankExchange(
+            session=session, seq=seq, sent_J=sent_J, requesting=out.requesting, has_room=out.has_room
+        )
+        message.header.stamp = stamp
+        self._output.publish(message)
+
+
+class Tank:
+    """EnergyTank with its peers. It begins at the minimum; the starting charge comes with each new engagement."""
+
+    def __init__(self, node: Node, name: str, config: EnergyTankConfig, channels: int) -> None:
+        self.session = new_session()
+        self.config = config
+        self.law = node.law(name, EnergyTank, config, channels)
+        self.law.reset()
+        self.peers: list[Peer] = []
+        self._state_out = node.output(f"/{name}/state", TankState)
+        self._seq = 0
+
+    def grant_charge(self) -> None:
+        """Tops the tank up to initial_J; counted in granted_J."""
+        self.law.grant(max(0.0, self.config.initial_J - self.law.state.energy_J))
+
+    def step(self, stamp: rospy.Time, **inputs: Any) -> Any:
+        """Steps the law with the peers' credits and wishes, sends its answers, publishes the state."""
+        asking = [peer for peer in self.peers if peer.requesting]
+        roomy = [peer for peer in self.peers if peer.has_room]
+        received_J = sum(peer.take_credit() for peer in self.peers)
+        out = self.law.step(
+            received_J=received_J, peer_requests=len(asking), peer_has_room=bool(roomy), **inputs
+        )
+        answer_J = out.sent_J - out.sent_overflow_J
+        for peer in self.peers:
+            share_J = answer_J / len(asking) if peer in asking else 0.0
+            share_J += out.sent_overflow_J / len(roomy) if peer in roomy else 0.0
+            peer.send(share_J, out, stamp)
+        self._publish(out, stamp)
+        return out
+
+    def _publish(self, out: Any, stamp: rospy.Time) -> None:
+        state, config = self.law.state, self.config
+        self._seq += 1
+        message = TankState(
+            seq=self._seq,
+            session=self.session,
+            energy_J=out.energy_J,
+            minimum_J=config.minimum_J,
+            request_J=config.request_J,
+            available_J=config.available_J,
+            maximum_J=config.maximum_J,
+            reduction=out.reduction,
+            scale=out.scale,
+            damping=out.damping.tolist(),
+            work_out_J=state.work_out_J,
+            received_J=state.received_J,
+            sent_J=state.sent_J,
+            vented_J=state.vented_J,
+            granted_J=state.granted_J,
+            requesting=out.requesting,
+            has_room=out.has_room,
+            status=out.status.name,
+        )
+        message.header.stamp = stamp
+        self._state_out.publish(message)
