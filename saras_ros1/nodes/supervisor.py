@@ -1,0 +1,180 @@
+"""supervisor: watches consoles, arms and nodes, and says for each side whether it may teleoperate.
+
+It only says so: every receiver has its own watchdog and treats silence of this node as HOLD.
+"""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import rosgraph
+import rospy
+from geometry_msgs.msg import PoseStamped
+from sensor_msgs.msg import Joy
+from std_msgs.msg import String
+from std_srvs.srv import Trigger, TriggerResponse
+
+from saras_ros1 import convert
+from saras_ros1.channel import SIDES, base_frame
+from saras_ros1.inputs import Input
+from saras_ros1.msg import ChannelState, TankState
+from saras_ros1.node import Node, run
+from saras_ros1.nodes.tf_transformer import CLUTCH
+from saras_ros1.side_supervisor import SideSupervisor, State, Watch
+
+
+class Side:
+    """Inputs, state table and outputs of one side."""
+
+    def __init__(self, node: Supervisor, side: str) -> None:
+        self.node, self.side = node, side
+        self.table = SideSupervisor(side, node.auto_engage)
+        pose = convert.in_frame(base_frame(side), convert.pose)
+        self.buttons = node.input(f"/touchball_{side}/buttons", Joy, timeout_s=node.console_limit_s)
+        self.arm = node.input(f"/mesa_{side}/ee_pose", PoseStamped, pose, timeout_s=node.arm_limit_s)
+        # Only their ages are of interest: AnyMsg spares the decoding.
+        self.links = [
+            (f"node tf_transformer_{side}", node.input(f"/tf_transformer_{side}/tracked_pose", rospy.AnyMsg)),
+            ("node transparency", node.input(f"/transparency/{side}/desired_twist", rospy.AnyMsg)),
+        ]
+        self.set_point = node.input(f"/mesa_{side}/set_point", rospy.AnyMsg)
+        self.publisher = node.output(f"/system/{side}/state", ChannelState, latch=True)
+        self.arm.listeners.append(self._on_arm)
+        self._tip: np.ndarray | None = None
+        self._tip_at = 0.0
+        self._jump = ""
+        self._engaged_at = 0.0
+        self._seq = 0
+        rospy.Service(f"/system/{side}/engage", Trigger, self._on_engage)
+        rospy.Service(f"/system/{side}/hold", Trigger, self._on_hold)
+
+    def _on_arm(self, source: Input) -> None:
+        tip, before = source.value[:3, 3], self._tip_at
+        self._tip_at = source.received_s
+        if self._tip is not None and self._tip_at - before < self.node.arm_limit_s:
+            moved = float(np.linalg.norm(tip - self._tip))
+            if moved > self.node.jump_limit_m:
+                self._jump = f"the arm's pose jumped {moved * 1e3:.0f} mm (limit {self.node.jump_limit_m * 1e3:.0f})"
+        self._tip = tip
+
+    def update(self) -> None:
+        """Ages into the table; a changed state is published and logged at once."""
+        watches = [
+            Watch("console data", self.buttons.age_s, self.node.console_limit_s, "check the console and its link"),
+            Watch("arm state", self.arm.age_s, self.node.arm_limit_s, "check the arm and arm_state"),
+        ]
+        watches += [Watch(name, link.age_s, self.node.node_limit_s, f"restart {name}") for name, link in self.links]
+        watches += [
+            Watch(name, link.age_s, self.node.node_limit_s, f"restart {name}") for name, link in self.node.tanks
+        ]
+        settled = time.monotonic() - self._engaged_at > self.node.node_limit_s
+        if self.table.state == State.ENGAGED and settled:
+            # It publishes only after the first engagement.
+            name = f"node velocity_integrator_{self.side}"
+            watches.append(Watch(name, self.set_point.age_s, self.node.node_limit_s, f"restart {name}"))
+        jump, self._jump = self._jump, ""
+        if self.table.update(watches, jump):
+            self.changed()
+
+    def changed(self) -> None:
+        """Publishes now, logs, and leaves an event."""
+        if self.table.state == State.ENGAGED:
+            self._engaged_at = time.monotonic()
+        self.publish()
+        text = f"{self.side}: {self.table.state.name}: {self.table.reason}"
+        (rospy.logerr if self.table.state == State.HOLD else rospy.loginfo)(text)
+        self.node.event(text)
+
+    def publish(self) -> None:
+        """The state as it is."""
+        self._seq += 1
+        buttons = self.buttons.fresh_value
+        message = ChannelState(
+            seq=self._seq,
+            side=self.side,
+            state=int(self.table.state),
+            engagement=self.table.engagement,
+            clutch=bool(buttons and buttons.buttons and buttons.buttons[CLUTCH]),
+            reason=self.table.reason,
+            advice=self.table.advice,
+        )
+        message.header.stamp = rospy.Time.now()
+        self.publisher.publish(message)
+
+    def _on_engage(self, _) -> TriggerResponse:
+        with self.node.lock:
+            before = self.table.state
+            done, text = self.table.engage("" if self.node.master_answers else "roscore does not answer")
+            if self.table.state != before:
+                self.changed()
+        return TriggerResponse(done, text)
+
+    def _on_hold(self, _) -> TriggerResponse:
+        with self.node.lock:
+            self.table.hold()
+            self.changed()
+        return TriggerResponse(True, f"{self.side} holds")
+
+
+class Supervisor(Node):
+    """Both sides; neither knows of the other."""
+
+    def __init__(self) -> None:
+        super().__init__("supervisor")
+        self.period_s = self.params.number("period_s", 0.001, 0.1)
+        self.publish_every = self.params.integer("publish_every", 1, 100)
+        self.console_limit_s = self.params.number("console_limit_s", 0.02, 10.0)
+        self.arm_limit_s = self.params.number("arm_limit_s", 0.02, 10.0)
+        self.node_limit_s = self.params.number("node_limit_s", 0.02, 10.0)
+        self.jump_limit_m = self.params.number("jump_limit_m", 0.001, 1.0)
+        self.auto_engage = self.params.flag("auto_engage")
+        self.params.finish()
+        self.master_answers = True
+        self._events = self.output("/system/events", String)
+        self.tanks = [
+            (f"node {name}", self.input(f"/{name}/state", TankState)) for name in ("tank_master", "tank_slave")
+        ]
+        self.sides = [Side(self, side) for side in SIDES]
+        self._updates = 0
+        self._due_s = time.monotonic()
+        self.every(self.period_s, self._update)
+        self.every(1.0, self._check_master)
+
+    def event(self, text: str) -> None:
+        """One line for the record."""
+        self._events.publish(String(text))
+
+    def _update(self) -> None:
+        now = time.monotonic()
+        late_s, self._due_s = now - self._due_s, now + self.period_s
+        with self.lock:
+            self._updates += 1
+            # Who was asleep himself cannot judge the age of others: their messages wait in our sockets.
+            if late_s < self.period_s:
+                for side in self.sides:
+                    side.update()
+            if self._updates % self.publish_every == 0:
+                for side in self.sides:
+                    side.publish()
+
+    def _check_master(self) -> None:
+        try:
+            rosgraph.Master("/supervisor").getPid()
+            answers = True
+        except Exception:
+            answers = False
+        if answers != self.master_answers:
+            self.master_answers = answers
+            text = "roscore answers again: restart the graph" if answers else "roscore does not answer: links go on"
+            rospy.logerr(text)
+            self.event(text)
+
+    def report(self) -> dict:
+        """State and reason a side."""
+        return {side.side: f"{side.table.state.name}: {side.table.reason}" for side in self.sides}
+
+
+def main() -> int:
+    """Runs the node."""
+    return run(Supervisor)
