@@ -36,6 +36,11 @@ class Channel:
         return self.state == ChannelState.ENGAGED
 
     @property
+    def clutch(self) -> bool:
+        """Whether the operator's clutch is pressed. The tracked pose freezes by itself; this only re-references."""
+        return self.input.fresh and self.input.message.clutch
+
+    @property
     def engagement(self) -> int:
         """Number of the last engagement, 0 when there was none."""
         return 0 if self.input.message is None else self.input.message.engagement

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import ipaddress
 import socket
 import time
@@ -106,10 +107,9 @@ class ConsoleLink:
         if self.newest is not None:
             packet.echo_session, packet.echo_seq = self.newest.session, self.newest.seq
             packet.echo_time_ns, packet.echo_hold_ns = self.newest.sender_time_ns, now_ns - self._newest_at_ns
-        try:
+        # A loopback port that nobody has opened yet refuses; the console's age tells.
+        with contextlib.suppress(OSError):
             self._socket.sendto(packet.encode(), self.console)
-        except OSError:
-            pass  # refused by a loopback port that nobody has opened yet; its age tells
 
     def close(self) -> None:
         """Closes the socket; receive() then ends."""

@@ -10,6 +10,7 @@ import rospy
 
 NANOSECONDS = 1_000_000_000
 CLOCK_STEP_S = 1.0
+HEARTBEAT_S = 0.05
 
 
 class Tick(NamedTuple):
@@ -87,16 +88,22 @@ class Loop:
 
     With several primaries it steps once all that are alive have brought a new message, or one of them a second one:
     a dead primary never holds up the others. While all are silent for longer than their watchdog, step is called
-    once per period with tick.stale.
+    once per period with tick.stale. `heartbeat` is called at most every 50 ms, by the thread that steps.
     """
 
     def __init__(
-        self, step: Callable[[Tick], None], primaries: list[Input], period_s: float, lock: threading.RLock
+        self,
+        step: Callable[[Tick], None],
+        primaries: list[Input],
+        period_s: float,
+        lock: threading.RLock,
+        heartbeat: Callable[[], None] = lambda: None,
     ) -> None:
         self.steps = self.stale_steps = self.dropped = self.clock_steps = 0
         self.busy_s = self.worst_s = 0.0
         self.period_s = period_s
         self._step, self._primaries, self._lock = step, primaries, lock
+        self._heartbeat, self._heartbeat_due_s = heartbeat, 0.0
         self._pending: set[int] = set()
         self._last_stamp_ns: int | None = None
         self._last_news_s = time.monotonic()
@@ -127,6 +134,9 @@ class Loop:
             self._step(tick)
         except Exception:  # a node that dies of one bad tick is worse than one that says so
             rospy.logerr_throttle(1.0, f"step failed: {_traceback()}")
+        if begin >= self._heartbeat_due_s:
+            self._heartbeat_due_s = begin + HEARTBEAT_S
+            self._heartbeat()
         took = time.perf_counter() - begin
         self.steps += 1
         self.busy_s += took

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import rospy
-from saras.law_trace import TracedLaw
 from std_msgs.msg import String
 
+from saras.law_trace import TracedLaw
 from saras_ros1.msg import LawTick
 
 

@@ -29,8 +29,10 @@ from typing import Any, Callable
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from saras import ConfigError, Error
+from std_msgs.msg import String
 
+from saras import ConfigError, Error
+from saras_ros1 import direct_connection
 from saras_ros1.inputs import Input, Loop, Tick
 from saras_ros1.law_publisher import PublishedLaw
 from saras_ros1.params import Params
@@ -52,6 +54,7 @@ class Node:
 
     def __init__(self, name: str, *, needs_params: bool = True) -> None:
         socket.setdefaulttimeout(SOCKET_TIMEOUT_S)
+        direct_connection.install()
         rospy.core.add_preshutdown_hook(_log_shutdown)
         rospy.init_node(name)
         self.name = rospy.get_name()
@@ -66,6 +69,7 @@ class Node:
         self._timers: list[tuple[float, Callable[[], None]]] = []
         self._steps_at_last_report: list[int] = []
         self._received_at_last_report: list[int] = []
+        self._heartbeats = rospy.Publisher("/system/heartbeats", String, queue_size=QUEUE)
         self._diagnostics = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=QUEUE)
 
     def input(
@@ -86,9 +90,10 @@ class Node:
         """Advertises with a bounded queue."""
         return rospy.Publisher(topic, message_class, queue_size=QUEUE, latch=latch)
 
-    def loop(self, step: Callable[[Tick], None], primaries: list[Input], *, period_s: float) -> Loop:
-        """Steps on the primary inputs; see Loop."""
-        loop = Loop(step, primaries, period_s, self.lock)
+    def loop(self, step: Callable[[Tick], None], primaries: list[Input], *, period_s: float, name: str = "") -> Loop:
+        """Steps on the primary inputs; see Loop. Its heartbeat on /system/heartbeats is "node" or "node/name"."""
+        beat = String(self.name.lstrip("/") + (f"/{name}" if name else ""))
+        loop = Loop(step, primaries, period_s, self.lock, lambda: self._heartbeats.publish(beat))
         self.loops.append(loop)
         return loop
 

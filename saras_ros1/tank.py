@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import rospy
-from saras.teleop import EnergyTank, EnergyTankConfig, LedgerReceiver, LedgerSender
 
+from saras.teleop import EnergyTank, EnergyTankConfig, LedgerReceiver, LedgerSender
 from saras_ros1.inputs import Input
 from saras_ros1.msg import TankExchange, TankState
 from saras_ros1.node import Node
@@ -87,9 +87,7 @@ class Tank:
         asking = [peer for peer in self.peers if peer.requesting]
         roomy = [peer for peer in self.peers if peer.has_room]
         received_J = sum(peer.take_credit() for peer in self.peers)
-        out = self.law.step(
-            received_J=received_J, peer_requests=len(asking), peer_has_room=bool(roomy), **inputs
-        )
+        out = self.law.step(received_J=received_J, peer_requests=len(asking), peer_has_room=bool(roomy), **inputs)
         answer_J = out.sent_J - out.sent_overflow_J
         for peer in self.peers:
             share_J = answer_J / len(asking) if peer in asking else 0.0

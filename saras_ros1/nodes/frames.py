@@ -9,8 +9,8 @@ import rospy
 import tf2_ros
 import yaml
 from geometry_msgs.msg import TransformStamped
-from saras import ConfigError
 
+from saras import ConfigError
 from saras_ros1 import convert
 from saras_ros1.node import Node, run
 from saras_ros1.params import Params

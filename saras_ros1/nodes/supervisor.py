@@ -18,7 +18,7 @@ from std_srvs.srv import Trigger, TriggerResponse
 from saras_ros1 import convert
 from saras_ros1.channel import SIDES, base_frame
 from saras_ros1.inputs import Input
-from saras_ros1.msg import ChannelState, TankState
+from saras_ros1.msg import ChannelState
 from saras_ros1.node import Node, run
 from saras_ros1.nodes.tf_transformer import CLUTCH
 from saras_ros1.side_supervisor import SideSupervisor, State, Watch
@@ -33,18 +33,20 @@ class Side:
         pose = convert.in_frame(base_frame(side), convert.pose)
         self.buttons = node.input(f"/touchball_{side}/buttons", Joy, timeout_s=node.console_limit_s)
         self.arm = node.input(f"/mesa_{side}/ee_pose", PoseStamped, pose, timeout_s=node.arm_limit_s)
-        # Only their ages are of interest: AnyMsg spares the decoding.
-        self.links = [
-            (f"node tf_transformer_{side}", node.input(f"/tf_transformer_{side}/tracked_pose", rospy.AnyMsg)),
-            ("node transparency", node.input(f"/transparency/{side}/desired_twist", rospy.AnyMsg)),
-        ]
-        self.set_point = node.input(f"/mesa_{side}/set_point", rospy.AnyMsg)
+        self.buttons.listeners.append(self._on_buttons)
+        self.nodes = (
+            f"tf_transformer_{side}",
+            f"transparency/{side}",
+            "tank_master",
+            "tank_slave",
+            f"velocity_integrator_{side}",
+        )
         self.publisher = node.output(f"/system/{side}/state", ChannelState, latch=True)
         self.arm.listeners.append(self._on_arm)
         self._tip: np.ndarray | None = None
         self._tip_at = 0.0
         self._jump = ""
-        self._engaged_at = 0.0
+        self._clutch = False
         self._seq = 0
         rospy.Service(f"/system/{side}/engage", Trigger, self._on_engage)
         rospy.Service(f"/system/{side}/hold", Trigger, self._on_hold)
@@ -58,29 +60,28 @@ class Side:
                 self._jump = f"the arm's pose jumped {moved * 1e3:.0f} mm (limit {self.node.jump_limit_m * 1e3:.0f})"
         self._tip = tip
 
+    def _on_buttons(self, source: Input) -> None:
+        pressed = bool(source.value.buttons and source.value.buttons[CLUTCH])
+        if pressed != self._clutch:
+            self._clutch = pressed
+            self.publish()
+
     def update(self) -> None:
         """Ages into the table; a changed state is published and logged at once."""
         watches = [
             Watch("console data", self.buttons.age_s, self.node.console_limit_s, "check the console and its link"),
             Watch("arm state", self.arm.age_s, self.node.arm_limit_s, "check the arm and arm_state"),
         ]
-        watches += [Watch(name, link.age_s, self.node.node_limit_s, f"restart {name}") for name, link in self.links]
         watches += [
-            Watch(name, link.age_s, self.node.node_limit_s, f"restart {name}") for name, link in self.node.tanks
+            Watch(f"heartbeat of {name}", self.node.heartbeat_age_s(name), self.node.node_limit_s, f"restart {name}")
+            for name in self.nodes
         ]
-        settled = time.monotonic() - self._engaged_at > self.node.node_limit_s
-        if self.table.state == State.ENGAGED and settled:
-            # It publishes only after the first engagement.
-            name = f"node velocity_integrator_{self.side}"
-            watches.append(Watch(name, self.set_point.age_s, self.node.node_limit_s, f"restart {name}"))
         jump, self._jump = self._jump, ""
         if self.table.update(watches, jump):
             self.changed()
 
     def changed(self) -> None:
         """Publishes now, logs, and leaves an event."""
-        if self.table.state == State.ENGAGED:
-            self._engaged_at = time.monotonic()
         self.publish()
         text = f"{self.side}: {self.table.state.name}: {self.table.reason}"
         (rospy.logerr if self.table.state == State.HOLD else rospy.loginfo)(text)
@@ -89,13 +90,12 @@ class Side:
     def publish(self) -> None:
         """The state as it is."""
         self._seq += 1
-        buttons = self.buttons.fresh_value
         message = ChannelState(
             seq=self._seq,
             side=self.side,
             state=int(self.table.state),
             engagement=self.table.engagement,
-            clutch=bool(buttons and buttons.buttons and buttons.buttons[CLUTCH]),
+            clutch=self._clutch and self.buttons.fresh,
             reason=self.table.reason,
             advice=self.table.advice,
         )
@@ -132,14 +132,20 @@ class Supervisor(Node):
         self.params.finish()
         self.master_answers = True
         self._events = self.output("/system/events", String)
-        self.tanks = [
-            (f"node {name}", self.input(f"/{name}/state", TankState)) for name in ("tank_master", "tank_slave")
-        ]
+        self._heartbeats: dict[str, float] = {}
+        rospy.Subscriber("/system/heartbeats", String, self._on_heartbeat, queue_size=100, tcp_nodelay=True)
         self.sides = [Side(self, side) for side in SIDES]
         self._updates = 0
         self._due_s = time.monotonic()
         self.every(self.period_s, self._update)
         self.every(1.0, self._check_master)
+
+    def _on_heartbeat(self, message: String) -> None:
+        self._heartbeats[message.data] = time.monotonic()
+
+    def heartbeat_age_s(self, name: str) -> float:
+        """Seconds since a node's loop last stepped; infinite when it never did."""
+        return time.monotonic() - self._heartbeats.get(name, -float("inf"))
 
     def event(self, text: str) -> None:
         """One line for the record."""

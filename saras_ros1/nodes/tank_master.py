@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 from geometry_msgs.msg import TwistStamped, WrenchStamped
-from saras.teleop import EnergyTankConfig
 
+from saras.teleop import EnergyTankConfig
 from saras_ros1 import convert
 from saras_ros1.channel import SIDES, Channel, base_frame
 from saras_ros1.node import Node, Tick, run

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 from geometry_msgs.msg import TwistStamped
-from saras import displacement
-from saras.teleop import EnergyTankConfig, TwistEstimatorConfig
 
+from saras import displacement
+from saras.teleop import EnergyTankConfig
 from saras_ros1 import convert
 from saras_ros1.arm_inputs import ArmInputs
 from saras_ros1.channel import SIDES, Channel, base_frame
@@ -20,8 +20,8 @@ from saras_ros1.tank import Peer, Tank
 class Port:
     """One tip: mean wrench, displacement and work since the last tick."""
 
-    def __init__(self, node: Node, side: str, timeout_s: float, twist: TwistEstimatorConfig) -> None:
-        self.arm = ArmInputs(node, side, timeout_s, twist)
+    def __init__(self, node: Node, side: str, timeout_s: float) -> None:
+        self.arm = ArmInputs(node, side, timeout_s, wrench=True)
         self._last: tuple[np.ndarray, np.ndarray] | None = None
         self.wrench, self.twist, self.work_J = np.zeros(6), np.zeros(6), 0.0
 
@@ -50,11 +50,10 @@ class TankSlave(Node):
         timeout_s = self.params.number("input_timeout_s", 0.005, 1.0)
         arm_timeout_s = self.params.number("arm_timeout_s", 0.005, 1.0)
         peer_timeout_s = self.params.number("peer_timeout_s", 0.005, 2.0)
-        twist_config = self.params.build(TwistEstimatorConfig, "slave_twist")
         self.tank = Tank(self, "tank_slave", self.params.build(EnergyTankConfig, "tank"), len(SIDES))
         self.params.finish()
         self.channels = [Channel(self, side) for side in SIDES]
-        self.ports = [Port(self, side, arm_timeout_s, twist_config) for side in SIDES]
+        self.ports = [Port(self, side, arm_timeout_s) for side in SIDES]
         self.desired, self.outputs = [], []
         for side in SIDES:
             twist = convert.in_frame(base_frame(side), convert.twist)

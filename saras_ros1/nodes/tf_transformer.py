@@ -7,9 +7,9 @@ from functools import partial
 import numpy as np
 import rospy
 from geometry_msgs.msg import PoseStamped, TwistStamped, WrenchStamped
-from saras.teleop import FrameMapping, FrameMappingConfig
 from sensor_msgs.msg import Joy
 
+from saras.teleop import FrameMapping, FrameMappingConfig
 from saras_ros1 import convert
 from saras_ros1.channel import SIDES, base_frame
 from saras_ros1.node import Node, Tick, run

@@ -51,7 +51,7 @@ class Side:
         self.out = node.output(f"/mesa_{side}/tool_command", JointState)
         self.roll: float | None = None
         self.previous: float | None = None
-        node.loop(self.step, [self.joints], period_s=node.period_s)
+        node.loop(self.step, [self.joints], period_s=node.period_s, name=side)
 
     def step(self, tick: Tick) -> None:
         """Nothing is commanded unless engaged: the instrument keeps what it has."""

@@ -7,10 +7,10 @@ import threading
 import numpy as np
 import rospy
 from geometry_msgs.msg import PoseStamped, WrenchStamped
-from saras.net import ChannelState as WireState
-from saras.net import TouchballDown, TouchballUp, TouchballUpSide
 from sensor_msgs.msg import JointState, Joy
 
+from saras.net import ChannelState as WireState
+from saras.net import TouchballDown, TouchballUp, TouchballUpSide
 from saras_ros1 import convert
 from saras_ros1.channel import SIDES, Channel
 from saras_ros1.console_link import ConsoleLink, Received
@@ -21,11 +21,11 @@ from saras_ros1.node import Node, Tick, run
 class Outputs:
     """Topics of one handle and its port guard."""
 
-    def __init__(self, node: Node, side: str, display_every: int) -> None:
+    def __init__(self, node: Node, side: str, tool_every: int, guard_every: int) -> None:
         self.console = f"touchball_{side}"
         self.joint_names = [f"{self.console}/{name}" for name in ("yaw", "pitch", "roll", "insertion")]
         self.grip_name = [f"{self.console}/grip"]
-        self.display_every = display_every
+        self.tool_every, self.guard_every = tool_every, guard_every
         self.pose = node.output(f"/{self.console}/pose", PoseStamped)
         self.joints = node.output(f"/{self.console}/joint_states", JointState)
         self.buttons = node.output(f"/{self.console}/buttons", Joy)
@@ -44,16 +44,17 @@ class Outputs:
             has_room=ledger.has_room,
         )
         buttons = Joy(axes=[up.grip], buttons=[int(up.clutch), int(up.clip)])
-        grip = JointState(name=self.grip_name, position=[up.grip])
-        angles = [joints.yaw_rad, joints.pitch_rad, joints.roll_rad, joints.insertion_m]
-        state = JointState(name=self.joint_names, position=angles)
-        for message in (exchange, buttons, grip, state):
-            message.header.stamp = stamp
+        exchange.header.stamp = buttons.header.stamp = stamp
         self.exchange.publish(exchange)
         self.buttons.publish(buttons)
-        self.grip.publish(grip)
-        self.joints.publish(state)
-        if seq % self.display_every == 0:
+        if seq % self.tool_every == 0:
+            grip = JointState(name=self.grip_name, position=[up.grip])
+            angles = [joints.yaw_rad, joints.pitch_rad, joints.roll_rad, joints.insertion_m]
+            state = JointState(name=self.joint_names, position=angles)
+            grip.header.stamp = state.header.stamp = stamp
+            self.grip.publish(grip)
+            self.joints.publish(state)
+        if seq % self.guard_every == 0:
             self._publish_guard(up, seq, stamp)
         self.pose.publish(convert.pose_msg(up.simball_T_handle, f"{self.console}/simball_base", stamp))
 
@@ -91,12 +92,13 @@ class TouchballReceiver(Node):
         period_s = self.params.number("period_s", 0.001, 0.1)
         wrench_timeout_s = self.params.number("wrench_timeout_s", 0.005, 1.0)
         peer_timeout_s = self.params.number("peer_timeout_s", 0.005, 2.0)
-        display_every = self.params.integer("display_every", 1, 1000)
+        tool_every = self.params.integer("tool_every", 1, 100)
+        guard_every = self.params.integer("guard_every", 1, 100)
         bind = (self.params.text("bind_host"), self.params.integer("bind_port", 0, 65535))
         console = (self.params.text("console_host"), self.params.integer("console_port", 1, 65535))
         self.link = ConsoleLink(bind, console, self.params.number("age_limit_s", 0.005, 10.0))
         self.params.finish()
-        self.outputs = {side: Outputs(self, side, display_every) for side in SIDES}
+        self.outputs = {side: Outputs(self, side, tool_every, guard_every) for side in SIDES}
         self.channels = {side: Channel(self, side) for side in SIDES}
         self.wrenches, self.ledgers = {}, {}
         for side in SIDES:

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 from geometry_msgs.msg import PoseStamped, TwistStamped, WrenchStamped
-from saras.teleop import Transparency, TransparencyConfig, TwistEstimatorConfig
-from sensor_msgs.msg import Joy
 
+from saras.teleop import Transparency, TransparencyConfig, TransparencyMode, TwistEstimatorConfig
 from saras_ros1 import convert
 from saras_ros1.arm_inputs import ArmInputs
 from saras_ros1.channel import SIDES, Channel, base_frame
 from saras_ros1.node import Node, Tick, run
-from saras_ros1.nodes.tf_transformer import CLUTCH
 
 ZERO = np.zeros(6)
 
@@ -22,20 +20,20 @@ class Side:
     def __init__(self, node: TransparencyNode, side: str) -> None:
         self.frame = base_frame(side)
         self.channel = Channel(node, side)
-        self.arm = ArmInputs(node, side, node.arm_timeout_s, node.twist_config)
+        feels_force = node.config.mode != TransparencyMode.POSITION_POSITION
+        self.arm = ArmInputs(node, side, node.arm_timeout_s, wrench=feels_force, twist=node.twist_config)
         timeout_s, source = node.master_timeout_s, f"/tf_transformer_{side}"
         read_pose = convert.in_frame(self.frame, convert.pose)
         read_twist = convert.in_frame(self.frame, convert.twist)
         self.pose = node.input(f"{source}/tracked_pose", PoseStamped, read_pose, timeout_s=timeout_s)
         self.twist = node.input(f"{source}/tracked_twist", TwistStamped, read_twist, timeout_s=timeout_s)
         self.filtered = node.input(f"{source}/tracked_twist_filtered", TwistStamped, read_twist, timeout_s=timeout_s)
-        self.buttons = node.input(f"/touchball_{side}/buttons", Joy, timeout_s=timeout_s)
         self.law = node.law(f"transparency_{side}", Transparency, node.config)
         self.wrench_out = node.output(f"/transparency/{side}/desired_wrench", WrenchStamped)
         self.twist_out = node.output(f"/transparency/{side}/desired_twist", TwistStamped)
         self.status = "WAITING"
         self.error = ZERO
-        node.loop(self.step, [self.pose, self.twist, self.filtered], period_s=node.period_s)
+        node.loop(self.step, [self.pose, self.twist, self.filtered], period_s=node.period_s, name=side)
 
     def step(self, tick: Tick) -> None:
         """Engaged and all fresh: the law. Else its stale branch: the slave stands, the force fades out in 100 ms."""
@@ -45,7 +43,6 @@ class Side:
         if self.channel.newly_engaged():
             self.law.reset()
         live = not tick.stale and self.twist.fresh and self.filtered.fresh and self.arm.fresh
-        buttons = self.buttons.fresh_value
         out = self.law.step(
             master_pose=master[0],
             master_twist=master[1],
@@ -54,7 +51,7 @@ class Side:
             slave_twist=self.arm.twist_filtered,
             tissue_wrench=self.arm.exerted_wrench,
             rcm=self.arm.rcm.value,
-            clutch=bool(buttons and buttons.buttons and buttons.buttons[CLUTCH]),
+            clutch=self.channel.clutch,
             stale=not (live and self.channel.engaged),
             dt=tick.dt,
         )

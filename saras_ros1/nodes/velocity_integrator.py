@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import rospy
 from geometry_msgs.msg import PoseStamped, TwistStamped
-from saras.teleop import VelocityIntegrator, VelocityIntegratorConfig
 from tf2_msgs.msg import TFMessage
 
+from saras.teleop import VelocityIntegrator, VelocityIntegratorConfig
 from saras_ros1 import convert
 from saras_ros1.arm_inputs import ArmInputs
 from saras_ros1.channel import SIDES, Channel, base_frame

@@ -1,7 +1,7 @@
 """A console of a few lines for tests: sends Touchball datagrams from a thread, keeps the newest answer.
 
-    console = FakeConsole(up_port, down_port); console.start()
-    console.position["left"] = np.array([0.01, 0, 0.22]); console.clutch["left"] = True
+console = FakeConsole(up_port, down_port); console.start()
+console.position["left"] = np.array([0.01, 0, 0.22]); console.clutch["left"] = True
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import threading
 import time
 
 import numpy as np
+
 from saras import ProtocolError
 from saras.net import TouchballDown, TouchballUp
 

@@ -6,7 +6,6 @@ import pytest
 pytest.importorskip("rospy")
 from saras import ConfigError
 from saras.teleop import TwistEstimatorConfig
-
 from saras_ros1.params import Params
 
 GOOD = {"law": {"cutoff_hz": 20.0, "dt_max_s": 0.1}, "period_s": 0.01, "mode": "static", "on": True, "v": [1, 2, 3]}
