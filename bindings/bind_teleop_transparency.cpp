@@ -20,6 +20,7 @@ void bind_config(py::module_& m) {
       .field("ramp_s", &Config::ramp_s, "force fades in and out over this time [s]")
       .field("drift_gain_1_s", &Config::drift_gain_1_s, "removes the drift that a reduced command leaves [1/s]")
       .field("drift_limit_m_s", &Config::drift_limit_m_s, "largest speed of that correction [m/s]")
+      .field("slave_lag_s", &Config::slave_lag_s, "of the arm in free motion: no drift, not corrected [s]")
       .field("rotation_drift_gain_1_s", &Config::rotation_drift_gain_1_s, "the same for rotation [1/s]")
       .field("rotation_drift_limit_rad_s", &Config::rotation_drift_limit_rad_s, "its largest rate [rad/s]")
       .field("pivoted", &Config::pivoted, "project the slave's twist on an arm that pivots about its trocar")
@@ -45,6 +46,8 @@ void bind_transparency(py::module_& m) {
       .field("has_reference", &TransparencyState::has_reference, "whether references were taken")
       .field("master_reference", &TransparencyState::master_reference, "(4, 4) master pose there")
       .field("slave_reference", &TransparencyState::slave_reference, "(4, 4) slave pose there")
+      .field("lagged_master", &TransparencyState::lagged_master,
+             "(3,) scaled master displacement behind slave_lag_s [m]")
       .field("ramp", &TransparencyState::ramp, "0 = no force, 1 = all of it")
       .field("wrench", &TransparencyState::wrench, "(6,) last wrench before the ramp");
   py::class_<Transparency>(m, "Transparency", "Desired wrench on the hand and desired twist of the slave, one side.")

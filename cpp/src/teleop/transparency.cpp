@@ -1,6 +1,7 @@
 #include "saras/teleop/transparency.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "saras/spatial/clamp_norm.hpp"
 #include "saras/spatial/rotation.hpp"
@@ -31,6 +32,7 @@ void TransparencyConfig::validate() const {
   validate::positive("ramp_s", ramp_s);
   validate::not_negative("drift_gain_1_s", drift_gain_1_s);
   validate::not_negative("drift_limit_m_s", drift_limit_m_s);
+  validate::not_negative("slave_lag_s", slave_lag_s);
   validate::not_negative("rotation_drift_gain_1_s", rotation_drift_gain_1_s);
   validate::not_negative("rotation_drift_limit_rad_s", rotation_drift_limit_rad_s);
   validate::positive("pivot_radius_min_m", pivot_radius_min_m);
@@ -69,13 +71,16 @@ TransparencyOutput Transparency::step(const TransparencyInput& input, Seconds dt
 
   bool limited = false;
   const Vector6 error = this->error(input);
-  const Twist twist = twist_of_slave(input, error, limited);
+  const Vector3 lagged_master = lag(input, dt);
+  const Vector3 drift = input.slave_pose.translation - state_.slave_reference.translation - lagged_master;
+  const Twist twist = twist_of_slave(input, error, drift, limited);
   // Finite inputs of absurd size can still overflow.
   if (!error.allFinite() || !is_finite(twist)) {
     output.desired_wrench = fade_out(dt);
     output.status = Status::kInvalidInput;
     return output;
   }
+  state_.lagged_master = lagged_master;
   output.error = error;
   output.desired_twist = twist;
 
@@ -119,10 +124,20 @@ Wrench Transparency::wrench_on_hand(const TransparencyInput& input, const Vector
   return {limit(wrench.force, config_.force_limit_N, limited), limit(wrench.torque, config_.torque_limit_Nm, limited)};
 }
 
-Twist Transparency::twist_of_slave(const TransparencyInput& input, const Vector6& error, bool& limited) const {
+Vector3 Transparency::lag(const TransparencyInput& input, Seconds dt) const {
+  const Vector3 moved = config_.scale * (input.master_pose.translation - state_.master_reference.translation);
+  if (config_.slave_lag_s == 0.0) {
+    return moved;
+  }
+  const double gain = 1.0 - std::exp(-dt / config_.slave_lag_s);
+  return state_.lagged_master + gain * (moved - state_.lagged_master);
+}
+
+Twist Transparency::twist_of_slave(const TransparencyInput& input, const Vector6& error, const Vector3& drift,
+                                   bool& limited) const {
   Twist twist;
   twist.linear = config_.scale * input.master_twist.linear -
-                 limit(config_.drift_gain_1_s * error.head<3>(), config_.drift_limit_m_s, limited);
+                 limit(config_.drift_gain_1_s * drift, config_.drift_limit_m_s, limited);
   twist.angular = input.master_twist.angular -
                   limit(config_.rotation_drift_gain_1_s * error.tail<3>(), config_.rotation_drift_limit_rad_s, limited);
   return config_.pivoted ? project_on_pivot(twist, input.slave_pose, input.rcm, config_.pivot_radius_min_m) : twist;
@@ -137,6 +152,7 @@ void Transparency::take_reference(const TransparencyInput& input) {
   state_.has_reference = true;
   state_.master_reference = input.master_pose;
   state_.slave_reference = input.slave_pose;
+  state_.lagged_master.setZero();
 }
 
 Twist project_on_pivot(const Twist& tip_twist, const Pose& base_T_tip, const Vector3& rcm, double radius_min) {

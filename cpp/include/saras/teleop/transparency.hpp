@@ -28,6 +28,7 @@ struct TransparencyConfig {
   Seconds ramp_s = 0.1;                  ///< force fades in and out over this time
   double drift_gain_1_s = 2.0;           ///< g, removes the position drift that a reduced command leaves
   double drift_limit_m_s = 0.02;         ///< largest speed of that correction
+  Seconds slave_lag_s = 0.0;             ///< of the arm in free motion: no drift, so not to be corrected
   double rotation_drift_gain_1_s = 0.0;  ///< the same for rotation
   double rotation_drift_limit_rad_s = 0.1;
   bool pivoted = true;               ///< project the slave's twist on an arm that pivots about its trocar
@@ -60,16 +61,18 @@ struct TransparencyState {
   bool has_reference = false;
   Pose master_reference;
   Pose slave_reference;
-  double ramp = 0.0;  ///< 0 = no force, 1 = all of it
-  Wrench wrench;      ///< last limited wrench before the ramp: what a fade-out fades
+  Vector3 lagged_master = Vector3::Zero();  ///< s (x_m - x_m0) as the lagging arm should follow it [m]
+  double ramp = 0.0;                        ///< 0 = no force, 1 = all of it
+  Wrench wrench;                            ///< last limited wrench before the ramp: what a fade-out fades
 };
 
 /// e = (x_s - x_s0) - s (x_m - x_m0), e_R = log((R_s R_s0^T) (R_m R_m0^T)^T); rates from the twists likewise.
 ///     position_position  w = k e + b e'      position_force  w = -lambda F      four_channel  the sum
 /// limited in norm, times a ramp that rises from 0 after each reference. The slave gets
-///     (s v_m - clamp(g e), omega_m - clamp(g_R e_R)),
-/// angular velocity unscaled. Pivoted: the tip's translation is kept, rotation becomes the pivoting that it
-/// implies, u x v / |r|, plus the roll u (u . omega), with u the shaft from trocar to tip.
+///     (s v_m - clamp(g d), omega_m - clamp(g_R e_R)),
+/// angular velocity unscaled. d is e with the master delayed by slave_lag_s (first order): else the correction would
+/// push the set-point ahead of the master by what the servo lags. Pivoted: the tip's translation is kept, rotation
+/// becomes the pivoting that it implies, u x v / |r|, plus the roll u (u . omega), with u the shaft from trocar to tip.
 ///
 /// References are taken at the first tick with both poses good and fresh (WAITING). Clutch: desired twist is
 /// zero, the force fades out, and references follow both poses, so that release begins with e = 0.
@@ -88,7 +91,8 @@ class Transparency {
  private:
   Vector6 error(const TransparencyInput& input) const;
   Wrench wrench_on_hand(const TransparencyInput& input, const Vector6& error, bool& limited) const;
-  Twist twist_of_slave(const TransparencyInput& input, const Vector6& error, bool& limited) const;
+  Twist twist_of_slave(const TransparencyInput& input, const Vector6& error, const Vector3& drift, bool& limited) const;
+  Vector3 lag(const TransparencyInput& input, Seconds dt) const;
   Wrench fade_out(Seconds dt);
   void take_reference(const TransparencyInput& input);
 
