@@ -45,7 +45,7 @@ def test_link_forgets_lost_payloads():
 def test_servo_arm_reaches_its_target():
     arm = sim.ServoArm()
     rcm = np.array([0.18, 0.0, -0.10])
-    target = rcm + [0.01, 0.02, -0.11]
+    target = rcm + np.array([0.01, 0.02, -0.11])
     for _ in range(1000):
         out = arm.step(target, 0.3, rcm, [0, 0, 0], 1e-3, target_jaw=1.0)
     np.testing.assert_allclose(out.base_T_tip[:3, 3], target, atol=1e-9)
