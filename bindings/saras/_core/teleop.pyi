@@ -499,6 +499,7 @@ class TransparencyConfig:
         "ramp_s",
         "drift_gain_1_s",
         "drift_limit_m_s",
+        "slave_lag_s",
         "rotation_drift_gain_1_s",
         "rotation_drift_limit_rad_s",
         "pivoted",
@@ -618,6 +619,13 @@ class TransparencyConfig:
     @scale.setter
     def scale(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
+    def slave_lag_s(self) -> float:
+        """
+        of the arm in free motion: no drift, not corrected [s]
+        """
+    @slave_lag_s.setter
+    def slave_lag_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
     def stiffness_N_m(self) -> float:
         """
         force on the hand per metre of slave error [N/m]
@@ -686,7 +694,14 @@ class TransparencyState:
     All that a Transparency remembers.
     """
 
-    _fields: typing.ClassVar[list] = ["has_reference", "master_reference", "slave_reference", "ramp", "wrench"]
+    _fields: typing.ClassVar[list] = [
+        "has_reference",
+        "master_reference",
+        "slave_reference",
+        "lagged_master",
+        "ramp",
+        "wrench",
+    ]
     def __copy__(self) -> TransparencyState: ...
     def __deepcopy__(self, arg0: dict) -> TransparencyState: ...
     def __init__(self, **kwargs) -> None:
@@ -701,6 +716,13 @@ class TransparencyState:
         """
     @has_reference.setter
     def has_reference(self, arg1: bool) -> None: ...
+    @property
+    def lagged_master(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) scaled master displacement behind slave_lag_s [m]
+        """
+    @lagged_master.setter
+    def lagged_master(self, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
     @property
     def master_reference(self) -> numpy.typing.NDArray[numpy.float64]:
         """
