@@ -174,6 +174,7 @@ void bind_kinematics(py::module_& m) {
   bind_rcm_arm(m);
   bind_simball_handle(m);
   m.attr("MESA_NOMINAL_RCM") = py::cast(Vector3(mesa::kNominalRcm.data()));
+  m.attr("MESA_SHAFT_RADIUS_M") = mesa::kShaftRadius;
 }
 
 }  // namespace saras::bindings

@@ -97,6 +97,18 @@ def box(size, bevel):
     return move(extrude(np.vstack(outline), z, bevel), (0, 0, -z / 2))
 
 
+def dome(radius, height):
+    """Profile of a flat dome on z = 0."""
+    return [(radius, 0), (radius, 0.5 * height), (0.8 * radius, 0.85 * height), (0.45 * radius, height), (0, height)]
+
+
+def spokes(count, first=0.0):
+    """(angle, cosine, sine) evenly around z."""
+    for i in range(count):
+        angle = first + 2 * math.pi * i / count
+        yield angle, math.cos(angle), math.sin(angle)
+
+
 def loft(rings):
     """Skin over rings (n, 3) of equal length with flat caps; rings run counter-clockwise about their direction."""
     first, last = rings[0], rings[-1]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from saras._core.kinematics import MESA_NOMINAL_RCM, Chain, Joint, JointType, RcmArm
+from saras._core.kinematics import MESA_NOMINAL_RCM, MESA_SHAFT_RADIUS_M, Chain, Joint, JointType, RcmArm
 
 JOINT_NAMES = ("scara_1", "scara_2", "universal_1", "universal_2", "insertion", "roll")
 """Order of q everywhere. ROS puts the arm's name before it: ``mesa_left/scara_1``. The jaw is apart."""
@@ -17,6 +17,7 @@ NOMINAL_RCM: npt.NDArray[np.float64] = np.array(MESA_NOMINAL_RCM)
 """(3,) trocar in sbs_world [m] around which the workspace is widest."""
 
 HOME_DEPTH_M = 0.08
+SHAFT_RADIUS_M: float = MESA_SHAFT_RADIUS_M
 
 # The positioning arm, straight up at zero. config/mesa_geometry.yaml, `passive`.
 PASSIVE_HEIGHT_M = (0.08, 0.10, 0.16, 0.16, 0.16, 0.14, 0.06)
@@ -73,4 +74,13 @@ def _lifted(height_m: float) -> npt.NDArray[np.float64]:
     return pose
 
 
-__all__ = ["HOME_DEPTH_M", "JOINT_NAMES", "NOMINAL_RCM", "PASSIVE_JOINT_NAMES", "arm", "home", "passive_chain"]
+__all__ = [
+    "HOME_DEPTH_M",
+    "JOINT_NAMES",
+    "NOMINAL_RCM",
+    "PASSIVE_JOINT_NAMES",
+    "SHAFT_RADIUS_M",
+    "arm",
+    "home",
+    "passive_chain",
+]

@@ -1,0 +1,104 @@
+"""config/mesa_geometry.yaml and config/scene.yaml hold the numbers that the code holds."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+import saras
+from saras.kinematics import mesa, scene, simball
+
+ROOT = Path(__file__).resolve().parents[2]
+GEOMETRY = yaml.safe_load((ROOT / "config" / "mesa_geometry.yaml").read_text(encoding="utf-8"))
+SCENE = ROOT / "config" / "scene.yaml"
+
+
+def test_arm():
+    numbers, config = GEOMETRY["arm"], mesa.arm().config
+    for field in ("scara_link_1_m", "scara_link_2_m", "tip_offset_m", "instrument_m", "minimum_depth_m"):
+        assert getattr(config, field) == numbers[field], field
+    for field in ("lower", "upper", "speed"):
+        np.testing.assert_array_equal(getattr(config, field), numbers[field])
+    assert tuple(numbers["joint_names"]) == mesa.JOINT_NAMES == tuple(mesa.arm().joint_names)
+    np.testing.assert_array_equal(mesa.NOMINAL_RCM, numbers["nominal_rcm_m"])
+    assert numbers["shaft_radius_m"] == mesa.SHAFT_RADIUS_M
+
+
+def test_positioning_arm():
+    numbers = GEOMETRY["passive"]
+    assert tuple(numbers["joint_names"]) == mesa.PASSIVE_JOINT_NAMES
+    assert tuple(numbers["height_m"]) == mesa.PASSIVE_HEIGHT_M
+    assert "".join(numbers["axis"]) == mesa.PASSIVE_AXIS
+    assert tuple(numbers["limit_rad"]) == mesa.PASSIVE_LIMIT_RAD
+    assert numbers["flange_height_m"] == mesa.PASSIVE_FLANGE_HEIGHT_M
+    assert numbers["flange_to_base_m"] == mesa.PASSIVE_FLANGE_TO_BASE_M
+
+
+def test_console():
+    numbers, config = GEOMETRY["simball"], simball.handle().config
+    assert config.handle_distance_m == numbers["handle_distance_m"]
+    np.testing.assert_array_equal(config.lower, numbers["lower"])
+    np.testing.assert_array_equal(config.upper, numbers["upper"])
+    assert tuple(numbers["joint_names"]) == simball.JOINT_NAMES == tuple(simball.handle().joint_names)
+    touch = GEOMETRY["touch"]
+    assert tuple(touch["joint_names"]) == simball.TOUCH_JOINT_NAMES
+    assert touch["shoulder_height_m"] == simball.TOUCH_SHOULDER_HEIGHT_M
+    assert touch["upper_arm_m"] == simball.TOUCH_UPPER_ARM_M
+    assert touch["forearm_m"] == simball.TOUCH_FOREARM_M
+
+
+def test_scene_places_trocars_where_the_workspace_is_widest():
+    room = scene.load(SCENE)
+    for side in ("left", "right"):
+        np.testing.assert_array_equal(room.arms[f"mesa_{side}"].rcm, mesa.NOMINAL_RCM)
+        touch_base = room.frames[f"touchball_{side}/touch_base"].parent_T_frame
+        np.testing.assert_allclose(touch_base, simball.SIMBALL_T_TOUCH_BASE, atol=1e-12)
+
+
+def test_both_arms_reach_the_phantom():
+    room, arm = scene.load(SCENE), mesa.arm()
+    top = room.phantom.center + room.phantom.size * [0.0, 0.0, 0.5]
+    for name, place in room.arms.items():
+        base_T_world = np.linalg.inv(room.world_T(f"{name}/sbs_world"))
+        sign = 1.0 if name == "mesa_left" else -1.0
+        for x in (-1, 0, 1):
+            for y in (0.0, 0.5, 1.0):
+                world_tip = top + np.array([x * room.phantom.size[0], sign * y * room.phantom.size[1], 0.0]) / 2
+                tip = (base_T_world @ np.append(world_tip, 1.0))[:3]
+                assert arm.unreachable(tip, place.rcm) == "", (name, world_tip)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "word"),
+    [
+        ("xyz_m: [-0.14, 0.256, 0.32]", "xyz_m: [-0.14, .nan, 0.32]", "frames.mesa_left/sbs_world.xyz_m"),
+        ("rcm_m: [0.18, 0.0, -0.10]   #", "rcm_m: [0.18, 0.0]   #", "arms.mesa_left.rcm_m"),
+        ("elbow: -1", "side: -1", "arms.mesa_left.elbow is missing"),
+        ("parent: touchball_left/simball_base", "parent: nowhere", "does not lead to world"),
+        ("size_m: [0.14, 0.22, 0.06]", "size_m: [0.14, -0.22, 0.06]", "phantom.size_m"),
+    ],
+)
+def test_scene_names_what_is_wrong(tmp_path, old, new, word):
+    text = SCENE.read_text(encoding="utf-8")
+    assert old in text
+    broken = tmp_path / "scene.yaml"
+    broken.write_text(text.replace(old, new, 1), encoding="utf-8")
+    with pytest.raises(saras.ConfigError, match=word):
+        scene.load(broken)
+
+
+def test_meshes_are_what_their_script_makes(tmp_path):
+    subprocess.run(
+        [sys.executable, str(ROOT / "script" / "make_meshes"), str(tmp_path)], check=True, stdout=subprocess.DEVNULL
+    )
+    made, kept = (
+        {p.name: p.read_bytes() for p in folder.glob("*.stl")} for folder in (tmp_path, ROOT / "urdf" / "meshes")
+    )
+    assert made.keys() == kept.keys()
+    assert [name for name in made if len(made[name]) != len(kept[name])] == []
+    assert sum(len(mesh) for mesh in kept.values()) < 1.5e6
