@@ -162,8 +162,8 @@ def marker_offset(packet, path, index):
         other = list(np.roll([0.0, 0.6, 0.8, 0.0], index))
         a_q, b_q = list(other), list(other)
         a_q[index], b_q[index] = 1e-5, 2e-5
-        set_at(a, path[:-1] + (path[-1],), None, a_q)
-        set_at(b, path[:-1] + (path[-1],), None, b_q)
+        set_at(a, (*path[:-1], path[-1]), None, a_q)
+        set_at(b, (*path[:-1], path[-1]), None, b_q)
     else:
         set_at(a, path, index, 0.25)
         set_at(b, path, index, 0.75)
