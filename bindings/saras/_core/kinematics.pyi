@@ -13,6 +13,7 @@ __all__: list[str] = [
     "Joint",
     "JointType",
     "MESA_NOMINAL_RCM",
+    "MESA_SHAFT_RADIUS_M",
     "RcmArm",
     "RcmArmConfig",
     "SimballHandle",
@@ -424,3 +425,4 @@ class SimballHandle:
         """
 
 MESA_NOMINAL_RCM: numpy.ndarray
+MESA_SHAFT_RADIUS_M: float = 0.0025
