@@ -11,36 +11,16 @@ from diagnostic_msgs.msg import DiagnosticArray
 from rich.table import Table
 from rich.text import Text
 
+from saras_ros1.latest import Latest
 from saras_ros1.msg import ChannelState, TankState
 
 SIDES = ("left", "right")
 TANKS = ("tank_master", "tank_slave", "port_guard_left", "port_guard_right")
-STALE_S = 1.0
 DIAGNOSTICS_STALE_S = 3.0
 STATE_NAMES = {0: "WAITING", 1: "READY", 2: "ENGAGED", 3: "HOLD"}
 _STATE_STYLE = {0: "yellow", 1: "cyan", 2: "bold green", 3: "bold white on red"}
 _LEVEL_STYLE = {0: "green", 1: "yellow", 2: "red", 3: "magenta"}
 UNKNOWN = Text("unknown", style="dim italic")
-
-
-class Latest:
-    """The newest message of a topic. It is decoded when looked at, not at 100 Hz."""
-
-    def __init__(self, topic: str, message_class: type) -> None:
-        self._class = message_class
-        self._raw: bytes | None = None
-        self._at = 0.0
-        rospy.Subscriber(topic, rospy.AnyMsg, self._on_message, queue_size=1, tcp_nodelay=True)
-
-    def _on_message(self, message: rospy.AnyMsg) -> None:
-        self._raw, self._at = message._buff, time.monotonic()
-
-    def value(self, stale_s: float = STALE_S) -> Any | None:
-        """The message, or None when there was none within stale_s."""
-        raw = self._raw
-        if raw is None or time.monotonic() - self._at > stale_s:
-            return None
-        return self._class().deserialize(raw)
 
 
 class Status:

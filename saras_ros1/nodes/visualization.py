@@ -1,0 +1,113 @@
+"""visualization: joint states for the drawn devices, and markers. Displays only; nothing depends on it."""
+
+from __future__ import annotations
+
+from collections import deque
+
+import numpy as np
+import rospy
+from geometry_msgs.msg import Point, PointStamped, PoseStamped, WrenchStamped
+from sensor_msgs.msg import JointState
+from visualization_msgs.msg import MarkerArray
+
+from saras.kinematics import simball
+from saras_ros1 import convert, markers
+from saras_ros1.channel import SIDES, base_frame
+from saras_ros1.latest import Latest
+from saras_ros1.msg import ChannelState, TankState
+from saras_ros1.node import Node, run
+
+LABEL_HEIGHT_M = 0.25
+TOUCH_T_SIMBALL = np.linalg.inv(simball.SIMBALL_T_TOUCH_BASE)
+
+
+class Side:
+    """One arm and one hand piece."""
+
+    def __init__(self, node: Visualization, side: str) -> None:
+        self.side, self.frame, self.console = side, base_frame(side), f"touchball_{side}"
+        self.arm_joints = Latest(f"/mesa_{side}/joint_states", JointState)
+        self.tool = Latest(f"/mesa_{side}/tool", JointState)
+        self.tip = Latest(f"/mesa_{side}/ee_pose", PoseStamped)
+        self.set_point = Latest(f"/mesa_{side}/set_point", PoseStamped)
+        self.tissue = Latest(f"/mesa_{side}/measured_cf", WrenchStamped)
+        self.rcm = Latest(f"/mesa_{side}/rcm", PointStamped)  # latched: never too old
+        self.hand_joints = Latest(f"/{self.console}/joint_states", JointState)
+        self.handle = Latest(f"/{self.console}/pose", PoseStamped)
+        self.hand = Latest(f"/touchball_{side}/wrench", WrenchStamped)
+        self.state = Latest(f"/system/{side}/state", ChannelState)
+        self.guard = Latest(f"/port_guard_{side}/state", TankState)
+        self.trail: deque = deque(maxlen=markers.TRAIL_POINTS)
+        self.arm_out = node.output(f"/visualization/mesa_{side}/joint_states", JointState)
+        self.console_out = node.output(f"/visualization/{self.console}/joint_states", JointState)
+
+    def publish_joints(self) -> None:
+        """Arm with its jaw; hand piece with the Touch that carries it. Unknown ones stay where they were drawn."""
+        now = rospy.Time.now()
+        arm, tool = self.arm_joints.value(), self.tool.value()
+        if arm is not None:
+            message = JointState(name=list(arm.name), position=list(arm.position))
+            if tool is not None and len(tool.position) > 1:
+                message.name.append(f"mesa_{self.side}/jaw")
+                message.position.append(tool.position[1])
+            message.header.stamp = now
+            self.arm_out.publish(message)
+        hand, handle = self.hand_joints.value(), self.handle.value()
+        if hand is not None and handle is not None:
+            touch = simball.touch_joints_from_handle(convert.pose(handle))
+            names = [f"{self.console}/{name}" for name in simball.TOUCH_JOINT_NAMES]
+            message = JointState(name=[*hand.name, *names], position=[*hand.position, *touch.tolist()])
+            message.header.stamp = now
+            self.console_out.publish(message)
+
+    def markers(self, tanks: dict[str, TankState | None]) -> list:
+        """All markers of this side."""
+        s, frame = self.side, self.frame
+        tip, set_point, rcm = self.tip.value(), self.set_point.value(), self.rcm.value(float("inf"))
+        at = tip.pose.position if tip is not None else None
+        if at is not None:
+            self.trail.append(at)
+        energies = {"guard": self.guard.value(), **tanks}
+        return [
+            markers.force(f"{s} force on tissue", frame, at, self.tissue.value()),
+            markers.ball(f"{s} set-point", frame, set_point and set_point.pose.position, markers.BLUE, 0.008),
+            markers.trail(f"{s} trail", frame, list(self.trail), markers.BLUE),
+            markers.ball(f"{s} trocar", frame, rcm and rcm.point, markers.WHITE, 0.006),
+            markers.force(f"{s} force on hand", f"{self.console}/touch_base", self._hand_in_touch(), self.hand.value()),
+            markers.label(f"{s} state", frame, LABEL_HEIGHT_M, self.state.value(), energies),
+        ]
+
+    def _hand_in_touch(self) -> Point | None:
+        """Where the hand is, in the frame of its force."""
+        handle = self.handle.value()
+        if handle is None:
+            return None
+        return Point(*(TOUCH_T_SIMBALL @ convert.pose(handle))[:3, 3].tolist())
+
+
+class Visualization(Node):
+    """Timers only: no law steps here."""
+
+    def __init__(self) -> None:
+        super().__init__("visualization")
+        joints_hz = self.params.number("joints_hz", 1.0, 60.0)
+        markers_hz = self.params.number("markers_hz", 1.0, 60.0)
+        self.params.finish()
+        self.tanks = {name: Latest(f"/tank_{name}/state", TankState) for name in ("master", "slave")}
+        self.sides = [Side(self, side) for side in SIDES]
+        self.markers = self.output("/saras/markers", MarkerArray)
+        self.every(1.0 / joints_hz, self._publish_joints)
+        self.every(1.0 / markers_hz, self._publish_markers)
+
+    def _publish_joints(self) -> None:
+        for side in self.sides:
+            side.publish_joints()
+
+    def _publish_markers(self) -> None:
+        tanks = {name: latest.value() for name, latest in self.tanks.items()}
+        self.markers.publish(MarkerArray([marker for side in self.sides for marker in side.markers(tanks)]))
+
+
+def main() -> int:
+    """Runs the node."""
+    return run(Visualization)
