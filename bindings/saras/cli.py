@@ -18,6 +18,8 @@ import saras
 #: name: (module, one line for --help)
 COMMANDS: dict[str, tuple[str, str]] = {
     "console": ("saras.console.command", "read the two handles, guard their ports, talk to the platform over UDP"),
+    "replay": ("saras.replay", "run the laws again on recorded inputs and compare"),
+    "report": ("saras.report.command", "write the HTML report of a recorded session"),
 }
 
 #: import name of an optional library: what to install

@@ -79,7 +79,8 @@ def account(name: str, tank: Topic) -> Account:
     """Sums a tank's columns over its sessions: cumulative values start again at each restart."""
     ends = np.append(np.flatnonzero(np.diff(tank["session"].astype(np.int64)) != 0), len(tank) - 1)
     total = {term: float(tank[term][ends].sum()) for term in _TERMS}
-    charged = tank["granted_J"] > 0
+    # A tank that was never charged lies at its floor.
+    charged = tank["granted_J"] > tank["minimum_J"] * (1 + 1e-9)
     lowest = float(tank["energy_J"][charged].min()) if charged.any() else float("nan")
     return Account(
         name,
