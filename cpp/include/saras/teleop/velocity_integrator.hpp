@@ -58,6 +58,7 @@ struct VelocityIntegratorState {
 /// Bounds, in this order: commanded speed (norm, direction kept), approach, lead over measured, cone and
 /// insertion (nearest point inside, so that the set-point slides along the wall), lead again (it wins where the
 /// arm is outside the workspace), and last the step itself: never longer than speed limit * dt, whatever pulls.
+/// (A step along the sphere of least insertion is a chord of it: inside by (v dt)^2 / (8 r), micrometres, at most.)
 /// A workspace bound that is already broken (start outside, trocar moved) moves nothing by itself: it
 /// only refuses to go further out.
 ///
