@@ -168,6 +168,42 @@ TEST(Transparency, DriftIsRemovedAtNoMoreThanItsLimit) {
   }
 }
 
+/// Peak of |set-point - s master| while the hand swings 50 mm at 0.5 Hz and the arm lags its set-point by 33 ms.
+double overshoot(Seconds slave_lag_s) {
+  auto config = without_limits();
+  config.slave_lag_s = slave_lag_s;
+  Transparency law(config);
+  auto input = at_rest();
+  Vector3 set_point = input.slave_pose.translation;
+  double worst = 0.0;
+  for (int i = 0; i < 1000; ++i) {
+    const double x = 0.05 * std::sin(M_PI * i * kDt);
+    input.master_twist.linear.x() = (x - input.master_pose.translation.x()) / kDt;
+    input.master_pose.translation.x() = x;
+    input.slave_pose.translation += (1.0 - std::exp(-kDt / 0.033)) * (set_point - input.slave_pose.translation);
+    set_point += law.step(input, kDt).desired_twist.linear * kDt;
+    worst = std::max(worst, std::abs(set_point.x() - 0.5 * x));
+  }
+  return worst;
+}
+
+TEST(Transparency, LagOfTheServoIsNotMistakenForDrift) {
+  EXPECT_GT(overshoot(0.0), 1e-3);
+  EXPECT_LT(overshoot(0.033 + kDt), 2e-4);
+}
+
+TEST(Transparency, DriftDiesOutAfterAReduction) {
+  Transparency law(without_limits());
+  auto input = at_rest();
+  for (int i = 0; i < 800; ++i) {
+    const bool reduced = i > 50 && i < 60;
+    input.master_twist.linear.x() = i < 100 ? 0.1 : 0.0;
+    input.master_pose.translation += input.master_twist.linear * kDt;
+    input.slave_pose.translation += (reduced ? 0.0 : 1.0) * law.step(input, kDt).desired_twist.linear * kDt;
+  }
+  EXPECT_NEAR(law.step(input, kDt).error.norm(), 0.0, 1e-6);
+}
+
 TEST(Transparency, ForceRampsInOverItsTimeAfterEngagement) {
   Transparency law(without_limits());
   auto input = at_rest();
