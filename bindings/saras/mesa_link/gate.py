@@ -41,11 +41,11 @@ class CommandGate:
         self._next_session = first_session
         self._sent: deque[tuple[int, float]] = deque(maxlen=config.ticks_remembered)
         self._holder = ""
-        self._last_seq = 0
         self._heard_s = 0.0
         self._target_s = 0.0
         self.controller = ""
         self.session = 0
+        self.last_seq = 0
         self.dropped: Counter[str] = Counter()
 
     def note_state(self, tick: int, now_s: float) -> None:
@@ -58,7 +58,7 @@ class CommandGate:
             raise MessageError(Reason.BUSY, f"hello.control: '{self.controller}' is in control of this arm")
         self._holder, self.controller = client_id, name
         self.session, self._next_session = self._next_session, self._next_session + 1
-        self._last_seq, self._heard_s, self._target_s = 0, now_s, -1.0
+        self.last_seq, self._heard_s, self._target_s = 0, now_s, -1.0
         return self.session
 
     def release(self, client_id: str) -> None:
@@ -72,13 +72,13 @@ class CommandGate:
             raise MessageError(Reason.NOT_IN_CONTROL, "this client has no control, say hello with control: true")
         if header.session != self.session:
             raise MessageError(Reason.OLD_SESSION, f"session {header.session}, the one in control is {self.session}")
-        if header.seq <= self._last_seq:
-            raise MessageError(Reason.REPLAYED, f"seq {header.seq} is not above {self._last_seq}")
+        if header.seq <= self.last_seq:
+            raise MessageError(Reason.REPLAYED, f"seq {header.seq} is not above {self.last_seq}")
         age_s = now_s - self._sent_at(header.echo_tick)
         limit_s = min(header.max_age_s, self._config.command_age_limit_s)
         if age_s > limit_s:
             raise MessageError(Reason.EXPIRED, f"{1e3 * age_s:.0f} ms old, limit {1e3 * limit_s:.0f} ms")
-        self._last_seq = header.seq
+        self.last_seq = header.seq
         self._heard_s = now_s
 
     def _sent_at(self, tick: int) -> float:

@@ -30,8 +30,13 @@ def to_target(pose: NDArray[np.float64]) -> Target:
     rotation = pose[:3, :3]
     if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-6 or np.linalg.det(rotation) < 0.0:
         raise ValueError(f"pose: not a rotation: {rotation.tolist()}")
+    return matrix_to_target(pose)
+
+
+def matrix_to_target(pose: NDArray[np.float64]) -> Target:
+    """The same for a pose that is known to be one."""
     # Shepperd's method: divide by the largest of the four components.
-    (a, b, c), (d, e, f), (g, h, i) = rotation.tolist()
+    (a, b, c, px), (d, e, f, py), (g, h, i, pz), _ = pose.tolist()
     squares = (1 + a - e - i, 1 - a + e - i, 1 - a - e + i, 1 + a + e + i)
     largest = max(range(4), key=squares.__getitem__)
     s = 2.0 * math.sqrt(squares[largest])
@@ -42,7 +47,7 @@ def to_target(pose: NDArray[np.float64]) -> Target:
         ((h - f) / s, (c - g) / s, (d - b) / s, s / 4),
     )[largest]
     sign = -1.0 if w < 0.0 else 1.0
-    return Target(tuple(pose[:3, 3].tolist()), (sign * x, sign * y, sign * z, sign * w))
+    return Target((px, py, pz), (sign * x, sign * y, sign * z, sign * w))
 
 
 def angle_between(a: tuple[float, ...], b: tuple[float, ...]) -> float:

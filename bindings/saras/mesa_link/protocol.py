@@ -144,10 +144,11 @@ class TargetInEffect:
 
 @dataclass(frozen=True)
 class State:
-    """One sample of the arm. ``time_s`` is the arm's own monotonic clock: compare it with nothing else."""
+    """One sample of the arm. ``time_s`` is its time on the arm's own monotonic clock: compare it with nothing else."""
 
     tick: int
     time_s: float
+    period_s: float  # of a tick: machine time between two states
     joints: tuple[float, ...]  # JOINTS values, rad, insertion in m
     joint_velocities: tuple[float, ...]
     jaw: float
@@ -161,6 +162,7 @@ class State:
     target: TargetInEffect
     controller: str  # name of the client in control, "" for none
     session: int  # the controlling session, 0 for none
+    last_seq: int  # newest command that the arm took in this session: it stands still only when the sender does
     dropped: dict[str, int] = field(default_factory=dict)  # by Reason, since the arm started
     fault: str = ""
     wrench: tuple[float, ...] | None = None  # exerted on the tissue, base axes, at the tip; None without a sensor
@@ -180,6 +182,7 @@ class State:
         return cls(
             tick=read.integer("tick"),
             time_s=read.number("time_s"),
+            period_s=read.number("period_s", 1e-4, 0.1),
             joints=read.vector("joints", JOINTS),
             joint_velocities=read.vector("joint_velocities", JOINTS),
             jaw=read.number("jaw", 0.0, 1.0),
@@ -193,6 +196,7 @@ class State:
             target=TargetInEffect.parse(read.part("target")),
             controller=read.text("controller"),
             session=read.integer("session"),
+            last_seq=read.integer("last_seq"),
             dropped=read.counters("dropped"),
             fault=read.text("fault"),
             wrench=read.vector("wrench", 6) if read.has("wrench") else None,

@@ -71,6 +71,7 @@ class _Json:
 
 class _Packet(socketio.packet.Packet):  # type: ignore[misc]
     json = _Json
+    uses_binary_events = False  # spares a walk through every state in search of bytes
 
 
 class ArmServer:
@@ -136,11 +137,11 @@ class ArmServer:
                 self.skipped_ticks += int(-delay / period)
                 due = time.monotonic()
             await asyncio.sleep(max(0.0, delay))
+            await self.tick(period, due)
             due += period
-            await self.tick(period)
 
-    async def tick(self, period_s: float) -> None:
-        """Watchdogs, machine, state out."""
+    async def tick(self, period_s: float, sample_time_s: float) -> None:
+        """Watchdogs, machine, state out. The state's time is the scheduled one: machine time has no jitter."""
         now = time.monotonic()
         following = self.gate.step(now)
         if self._following and not following:
@@ -149,27 +150,28 @@ class ArmServer:
         self._plant.step(period_s)
         self._tick += 1
         self.gate.note_state(self._tick, now)
-        state = self.faults.alter(self._state(now))
+        state = self.faults.alter(self._state(sample_time_s, period_s))
         if state is not None:
-            data = state.to_json()
-            for every in {hello.state_every for hello in self._readers.values()}:
-                if self._tick % every == 0:
-                    await self._sio.emit("state", data, room=f"state_{every}")
+            due = {hello.state_every for hello in self._readers.values() if self._tick % hello.state_every == 0}
+            if due:
+                await self._sio.emit("state", state.to_json(), room=[f"state_{every}" for every in due])
         if any(hello.truth for hello in self._readers.values()):
             truth = self._plant.truth(self._tick)
             if truth is not None:
                 await self._sio.emit("truth", truth.__dict__, room="truth")
 
-    def _state(self, now: float) -> State:
+    def _state(self, time_s: float, period_s: float) -> State:
         sample = self._plant.sample()
         fields = dict(sample.__dict__)
         fields["target"] = TargetInEffect(*self.commands.in_effect, sample.target.position, sample.target.quaternion)
         return State(
             tick=self._tick,
-            time_s=now,
+            time_s=time_s,
+            period_s=period_s,
             following=self._following,
             controller=self.gate.controller,
             session=self.gate.session,
+            last_seq=self.gate.last_seq,
             dropped=dict(self.gate.dropped),
             **fields,
         )
