@@ -76,7 +76,7 @@ def test_both_arms_reach_the_phantom():
 @pytest.mark.parametrize(
     ("old", "new", "word"),
     [
-        ("xyz_m: [-0.14, 0.256, 0.32]", "xyz_m: [-0.14, .nan, 0.32]", "frames.mesa_left/sbs_world.xyz_m"),
+        ("xyz_m: [-0.22, 0.162, 0.32]", "xyz_m: [-0.22, .nan, 0.32]", "frames.mesa_left/sbs_world.xyz_m"),
         ("rcm_m: [0.18, 0.0, -0.10]   #", "rcm_m: [0.18, 0.0]   #", "arms.mesa_left.rcm_m"),
         ("elbow: -1", "side: -1", "arms.mesa_left.elbow is missing"),
         ("parent: touchball_left/simball_base", "parent: nowhere", "does not lead to world"),
