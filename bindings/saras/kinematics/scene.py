@@ -86,7 +86,10 @@ def pose_from_xyz_rpy(xyz: npt.ArrayLike, rpy: npt.ArrayLike) -> Array:
 
 def load(path: str | Path) -> Scene:
     """Reads the scene. Raises ConfigError naming the entry that is missing or no finite number."""
-    import yaml
+    try:
+        import yaml
+    except ImportError:
+        raise ImportError("saras.kinematics.scene needs PyYAML: pip install pyyaml") from None
 
     document = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
     frames = {}
