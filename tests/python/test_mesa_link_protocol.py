@@ -234,3 +234,13 @@ def test_lag_is_backlog_not_delay() -> None:
 def test_unknown_driver_lists_known_ones() -> None:
     with pytest.raises(ConfigError, match=r"no arm driver named 'acme'; there are: .*socketio"):
         load_driver("acme")
+
+
+def test_a_vendors_plug_in_is_found_by_its_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
+    from importlib.metadata import EntryPoint
+
+    from saras.mesa_link import driver
+
+    points = [EntryPoint("acme", "collections:OrderedDict", driver.ENTRY_POINT_GROUP)]
+    monkeypatch.setattr(driver, "entry_points", lambda group: points if group == driver.ENTRY_POINT_GROUP else [])
+    assert load_driver("acme").__name__ == "OrderedDict"

@@ -50,10 +50,10 @@ class StateGuard:
     def check(self, received: Received) -> State:
         """The state, or ValueError."""
         state, last = received.state, self._last
-        if received.lag_s > self._config.lag_limit_s:
-            raise ValueError(f"the state comes {1e3 * received.lag_s:.0f} ms late (backlog)")
         if last is not None and state.tick == last.tick:
             raise ValueError(f"frozen: tick {state.tick} again")
+        if received.lag_s > self._config.lag_limit_s:
+            raise ValueError(f"the state comes {1e3 * received.lag_s:.0f} ms late (backlog)")
         restarted = last is None or state.tick < last.tick
         if restarted or last is None or _content(state) != _content(last) or state.session == 0:
             self._changed_s = state.time_s
