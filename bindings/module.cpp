@@ -11,4 +11,6 @@ PYBIND11_MODULE(_core, m) {
   saras::bindings::bind_sim(sim);
   auto net = m.def_submodule("net", "Datagram codecs");
   saras::bindings::bind_net(net);
+  auto console = m.def_submodule("console", "What the console program steps at device rate");
+  saras::bindings::bind_console(console);
 }

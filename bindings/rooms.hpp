@@ -10,5 +10,6 @@ void bind_teleop(pybind11::module_& m);
 void bind_kinematics(pybind11::module_& m);
 void bind_sim(pybind11::module_& m);
 void bind_net(pybind11::module_& m);
+void bind_console(pybind11::module_& m);
 
 }  // namespace saras::bindings

@@ -67,7 +67,7 @@ def test_no_force_until_engaged_and_none_within_100_ms_of_a_hold():
         ramps = []
         platform.wait_for(lambda: ramps.append((time.monotonic(), guard.ramp)) or guard.ramp == 0.0, "the ramp's end")
         assert all(a >= b for (_, a), (_, b) in zip(ramps, ramps[1:]))
-        assert guard.tank.state.granted_J == pytest.approx(0.40, abs=1e-12)
+        assert guard.law.state.tank.granted_J == pytest.approx(0.40, abs=1e-12)
 
 
 def test_a_silent_platform_is_stale_and_a_returning_one_needs_no_new_grant():
@@ -76,17 +76,17 @@ def test_a_silent_platform_is_stale_and_a_returning_one_needs_no_new_grant():
         platform.wait_for(lambda: guard.engagement == 0, "the platform")
         platform.engage()
         platform.wait_for(lambda: guard.ramp == 1.0, "full ramp")
-        granted = guard.tank.state.granted_J
+        granted = guard.law.state.tank.granted_J
         platform.muted = True
         platform.wait_for(lambda: guard.ramp == 0.0, "no force on a dead link")
         assert not program.link.is_fresh(time.monotonic_ns())
         platform.muted = False
         platform.wait_for(lambda: guard.ramp == 1.0, "force again")
-        assert guard.tank.state.granted_J == granted
+        assert guard.law.state.tank.granted_J == granted
         for side in platform.sides.values():
             side.engage()
         platform.wait_for(lambda: guard.engagement == 2, "the next engagement")
-        assert guard.tank.state.granted_J <= 2 * granted
+        assert guard.law.state.tank.granted_J <= 2 * granted
 
 
 def test_a_console_that_starts_into_a_running_engagement_begins_at_the_minimum():
@@ -95,9 +95,9 @@ def test_a_console_that_starts_into_a_running_engagement_begins_at_the_minimum()
         with running_console(platform) as program:
             guard = program.hands["left"].guard
             platform.wait_for(lambda: guard.engagement == 1, "the platform")
-            assert guard.tank.state.granted_J == pytest.approx(program.config.guard.tank.minimum_J)
+            assert guard.law.state.tank.granted_J == pytest.approx(program.config.guard.law.tank.minimum_J)
             # Energy comes by the ledger instead, on request.
-            platform.wait_for(lambda: guard.tank.state.received_J > 0.05, "energy from the platform")
+            platform.wait_for(lambda: guard.law.state.tank.received_J > 0.05, "energy from the platform")
 
 
 def test_energy_is_conserved_over_both_ledgers():
@@ -112,7 +112,7 @@ def test_energy_is_conserved_over_both_ledgers():
         platform.engage()
         begin = len(platform.ups)
         platform.wait_for(lambda: len(platform.ups) > begin + 300, "3 s of motion")
-    state = guard.tank.state
+    state = guard.law.state.tank
     put_in = state.granted_J + state.received_J
     assert abs(state.energy_J + state.work_out_J + state.sent_J + state.vented_J - put_in) < 1e-9
     side = platform.sides["left"]

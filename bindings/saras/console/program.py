@@ -13,7 +13,7 @@ from saras import ConfigError
 from saras.console.arrays import Array
 from saras.console.calibration import CLIP_CLOSED_BELOW, CLIP_OPEN_ABOVE, HandleCalibration
 from saras.console.device import HandleDevice, HandleReading
-from saras.console.guard import GuardConfig, PortGuard
+from saras.console.guard import GuardConfig, GuardedPort
 from saras.console.link import TouchballLink
 from saras.console.simball import HANDLE
 from saras.net import ChannelState, SimballJoints, TouchballUp, TouchballUpSide
@@ -49,7 +49,7 @@ class Hand:
         self.calibrated = calibration is not None or not device.needs_calibration
         self.calibration = calibration or HandleCalibration()
         self._joint_zero = np.array(self.calibration.joint_zero)
-        self.guard = PortGuard(config, session)
+        self.guard = GuardedPort(config, session)
         self.joints = np.zeros(4)
         self.pose: Array | None = None
         self.grip = 1.0
@@ -110,6 +110,7 @@ class Program:
             side: Hand(device, calibrations.get(side), config.guard, session) for side, device in devices.items()
         }
         self.ticks = 0
+        self._dt_max_s = config.guard.law.tank.dt_max_s
         self.overruns = 0
         self._send_period_ns = round(1e9 / config.send_rate_hz)
         self._next_send_ns = 0
@@ -139,7 +140,7 @@ class Program:
             self._last_ns = now_ns - round(1e9 / self.config.device_rate_hz)
         dt = (now_ns - self._last_ns) * 1e-9
         self._last_ns = now_ns
-        if dt > self.config.guard.tank.dt_max_s:
+        if dt > self._dt_max_s:
             # The guard bills what happened meanwhile and answers with no force; nothing is caught up.
             self.overruns += 1
             log.warning("the control loop stood still for %.0f ms", dt * 1e3)

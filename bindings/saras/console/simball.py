@@ -14,5 +14,5 @@ HANDLE = SimballHandle()
 HOME_JOINTS = np.array([0.0, 0.0, 0.0, 0.06])
 SIMBALL_T_HOME = HANDLE.forward(HOME_JOINTS)
 
-#: (3, 3) rotates the handle's twist into the frame that the wrench is given in.
+#: (3, 3) turns vectors of simball_base into the frame of the wrench. The laws have the same default.
 TOUCH_R_SIMBALL: Array = SIMBALL_T_TOUCH_BASE[:3, :3].T.copy()
