@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import sys
-import time
 import types
 import zipfile
 
@@ -13,6 +12,7 @@ import pytest
 
 from saras import ConfigError
 from saras.console.device import device_names, open_device
+from saras.console.devices import openhaptics
 from saras.console.motion import MOTIONS, scripted
 from saras.console.recorded_motion import RecordedMotion, RecordedMotionConfig, drop_repeats, load_rows
 from saras.console.simball import HANDLE, SIMBALL_T_HOME
@@ -185,24 +185,26 @@ def fake_pyopenhaptics(monkeypatch):
 def test_openhaptics_serves_both_devices_from_one_callback(monkeypatch):
     hd = fake_pyopenhaptics(monkeypatch)
     left, right = (open_device("openhaptics", side, {}) for side in ("left", "right"))
+    now = 1000 * MS
+    openhaptics.Scheduler.shared().clock_ns = lambda: now
     hd.position[1], hd.buttons[2] = (0.0, 0.0, 20.0), 3  # left 20 mm towards the user
-    left.apply(np.array([1.0, 2.0, 3.0, 0, 0, 0]), time.monotonic_ns())
+    left.apply(np.array([1.0, 2.0, 3.0, 0, 0, 0]), now)
     hd.tick()
     # touch_base: x towards the operator, z up. HD: z towards the user, y up, x right.
     assert hd.forces[1] == (2.0, 3.0, 1.0) and hd.forces[2] == (0.0, 0.0, 0.0)
-    reading = left.read(time.monotonic_ns())
+    reading = left.read(now)
     np.testing.assert_allclose(HANDLE.forward(reading.joints)[:3, 3] - SIMBALL_T_HOME[:3, 3], [-0.02, 0, 0], atol=1e-9)
     assert reading.joints[2] == pytest.approx(0.25) and not reading.clutch and reading.clip == 1.0
-    other = right.read(time.monotonic_ns())
+    other = right.read(now)
     assert other.clutch and other.clip == 0.0
     hd.position[1] = (0.0, 10.0, 20.0)
     hd.tick()
-    assert left.read(time.monotonic_ns()).work_J == pytest.approx(3.0 * 0.01)
-    time.sleep(0.003)
+    assert left.read(now).work_J == pytest.approx(3.0 * 0.01)
+    now += 3 * MS
     hd.tick()
     assert hd.forces[1] == (0.0, 0.0, 0.0)  # not refreshed
-    time.sleep(0.025)
-    assert left.read(time.monotonic_ns()) is None  # the servo loop stands still
+    now += 25 * MS
+    assert left.read(now) is None  # the servo loop stands still
     left.close()
     right.close()
     assert hd.calls[-3:] == ["start_scheduler", "stop_scheduler", "close 2"]

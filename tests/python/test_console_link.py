@@ -67,7 +67,8 @@ def test_no_force_until_engaged_and_none_within_100_ms_of_a_hold():
         ramps = []
         platform.wait_for(lambda: ramps.append((time.monotonic(), guard.ramp)) or guard.ramp == 0.0, "the ramp's end")
         assert all(a >= b for (_, a), (_, b) in zip(ramps, ramps[1:]))
-        assert guard.law.state.tank.granted_J == pytest.approx(0.40, abs=1e-12)
+        levels = program.config.guard.law.tank  # granted: up to the initial charge, less what the ledger brought before
+        assert levels.minimum_J < guard.law.state.tank.granted_J <= levels.initial_J + 1e-12
 
 
 def test_a_silent_platform_is_stale_and_a_returning_one_needs_no_new_grant():

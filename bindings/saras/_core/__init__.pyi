@@ -10,6 +10,7 @@ from . import teleop
 from . import kinematics
 from . import sim
 from . import net
+from . import console
 
 __all__: list[str] = [
     "ConfigError",
@@ -18,6 +19,7 @@ __all__: list[str] = [
     "ProtocolError",
     "Status",
     "add_delta",
+    "console",
     "displacement",
     "kinematics",
     "net",

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -64,6 +64,7 @@ class Scheduler:
         self._callback_module: Any = hd_callback
         self._servos: dict[str, _Servo] = {}
         self._callback: Any = None
+        self.clock_ns: Callable[[], int] = time.monotonic_ns
 
     @classmethod
     def shared(cls) -> Scheduler:
@@ -102,7 +103,7 @@ class Scheduler:
     def _serve(self) -> None:
         """One servo tick, inside the frame that the wrapper opened on the current device: others get their own."""
         hd = self.hd
-        now_ns = time.monotonic_ns()
+        now_ns = self.clock_ns()
         current = hd.get_current_device()
         for servo in tuple(self._servos.values()):
             other = servo.handle != current
