@@ -116,6 +116,7 @@ def test_motion_files_are_read_strictly(tmp_path):
         archive.writestr("x/ONE.csv", good)
         archive.writestr("x/TWO.csv", good)
     assert load_rows(tmp_path / "two.zip", "TWO").shape == track().shape
+    assert load_rows(tmp_path / "two.zip", nth=1).shape == track().shape
     with pytest.raises(ConfigError, match="2 of the files"):
         load_rows(tmp_path / "two.zip")
     lines = good.splitlines()

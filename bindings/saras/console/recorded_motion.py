@@ -28,7 +28,7 @@ class RecordedMotionConfig:
     """How a track is made fit for a handle."""
 
     rate_hz: float = 100.0  #: of the resampled track; between its points the motion is a cubic
-    highpass_hz: float = 0.08  #: below it is drift (walking about)
+    highpass_hz: float = 0.3  #: below it is drift (walking about)
     lowpass_hz: float = 4.0  #: above it is tracker noise
     fade_s: float = 2.0  #: from rest to motion, and back before it repeats
     amplitude_m: float = 0.03  #: 99th percentile of the distance from home
@@ -36,13 +36,15 @@ class RecordedMotionConfig:
     roll_rad: float = 1.0  #: largest turn about the shaft
 
 
-def load_rows(path: Path, member: str | None = None) -> Array:
-    """(n, 8) rows of a CSV file or of a zip's member (any part of its name; may be left out when there is only one).
+def load_rows(path: Path, member: str | None = None, nth: int | None = None) -> Array:
+    """(n, 8) rows of a CSV file or of a member of a zip file.
+
+    member: any part of its name; when it is left out, the only member, or of several the nth one (in order of names).
 
     Raises ConfigError naming file and line for anything that is not a track: wrong columns, not finite, time running
     backwards, quaternions that are not unit.
     """
-    name, data = _read(path, member)
+    name, data = _read(path, member, nth)
     rows: list[list[float]] = []
     for number, line in enumerate(data.decode("utf-8", errors="replace").splitlines(), 1):
         if not line.strip() or line.lstrip().startswith("#"):
@@ -63,7 +65,7 @@ def load_rows(path: Path, member: str | None = None) -> Array:
     return np.array(rows)
 
 
-def _read(path: Path, member: str | None) -> tuple[str, bytes]:
+def _read(path: Path, member: str | None, nth: int | None) -> tuple[str, bytes]:
     if not path.is_file():
         raise ConfigError(f"file = {path}: no such file")
     if not zipfile.is_zipfile(path):
@@ -74,7 +76,9 @@ def _read(path: Path, member: str | None) -> tuple[str, bytes]:
         return str(path), path.read_bytes()
     with zipfile.ZipFile(path) as archive:
         names = [info.filename for info in archive.infolist() if not info.is_dir() and info.file_size <= LARGEST_FILE]
-        found = [name for name in names if member is None or member in name]
+        found = sorted(name for name in names if member is None or member in name)
+        if member is None and nth is not None and len(found) > nth:
+            found = [found[nth]]
         if len(found) != 1:
             raise ConfigError(f"member = {member!r}: {len(found)} of the files in {path} match: {', '.join(names)}")
         return f"{path}:{found[0]}", archive.read(found[0])
@@ -151,11 +155,3 @@ def _fade(count: int, edge: int) -> Array:
     window[:edge] = 0.5 - 0.5 * np.cos(np.pi * np.arange(edge) / edge)
     window[-edge:] = window[:edge][::-1]
     return window
-
-
-def load_motion(path: Path, member: str | None, config: RecordedMotionConfig | None = None) -> RecordedMotion:
-    """Reads a file and makes it fit."""
-    return RecordedMotion(load_rows(path, member), config)
-
-
-__all__ = ["RecordedMotion", "RecordedMotionConfig", "drop_repeats", "load_motion", "load_rows"]

@@ -8,7 +8,7 @@ from pathlib import Path
 from saras import ConfigError
 from saras.console import options as option
 from saras.console.devices.simulated import COMMON_OPTIONS, SimulatedHandle
-from saras.console.recorded_motion import RecordedMotionConfig, load_motion
+from saras.console.recorded_motion import RecordedMotion, RecordedMotionConfig, load_rows
 
 LIMITS = {
     "highpass_hz": (0.001, 2.0),
@@ -30,5 +30,6 @@ def make(side: str, options: Mapping[str, str]) -> SimulatedHandle:
     config = RecordedMotionConfig()
     for name, (lowest, highest) in LIMITS.items():
         setattr(config, name, option.number(options, name, getattr(config, name), lowest, highest))
-    motion = load_motion(Path(options["file"]).expanduser(), options.get("member"), config)
-    return SimulatedHandle(motion, side, options)
+    # Of a zip with several tracks the left hand takes the first, the right hand the second.
+    rows = load_rows(Path(options["file"]).expanduser(), options.get("member"), ("left", "right").index(side))
+    return SimulatedHandle(RecordedMotion(rows, config), side, options)
