@@ -73,7 +73,7 @@ class ArmStateNode(Node):
         self.driver = open_driver(
             self,
             control=False,
-            truth=bool(self.truth_every),
+            truth_every=self.truth_every,
             on_state=self._on_state,
             on_truth=self._on_truth if self.truth_every else None,
         )
@@ -133,8 +133,6 @@ class ArmStateNode(Node):
         self.tf_static.sendTransform(convert.transform_msg(base_T_rcm, self.frame, f"mesa_{self.side}/rcm", stamp))
 
     def _on_truth(self, truth: Truth) -> None:
-        if truth.tick % self.truth_every:
-            return
         message = ArmTruth(depth=truth.depth_m, tip_force=Vector3(*truth.tip_force))
         message.rcm_deviation = truth.rcm_deviation_m
         message.header.frame_id, message.header.stamp = self.frame, rospy.Time.now()

@@ -27,21 +27,22 @@ class SocketIoArmDriver(ArmDriver):
         *,
         control: bool = True,
         state_every: int = 1,
-        truth: bool = False,
+        truth_every: int = 0,
         times: LinkTimes | None = None,
         start_distance_m: float = 0.02,
         start_angle_rad: float = 0.35,
         on_state: StateCallback | None = None,
         on_truth: TruthCallback | None = None,
     ) -> None:
-        """``state_every``: of the arm's states take each n-th. ``start_*``: how near to the measured pose the
-        first target after a pause, or of a session, must lie. Callbacks run in the connection's thread.
+        """``state_every``: of the arm's states take each n-th; ``truth_every``: of a simulation's truths, 0 none.
+        ``start_*``: how near to the measured pose the first target after a pause, or of a session, must lie.
+        Callbacks run in the connection's thread.
         """
         self._url = url
         self._times = times or LinkTimes()
         self._start_distance_m, self._start_angle_rad = start_distance_m, start_angle_rad
         self._last_target = (0, -math.inf)  # session, local time
-        hello = Hello(PROTOCOL_VERSION, client, control, state_every, truth)
+        hello = Hello(PROTOCOL_VERSION, client, control, state_every, truth_every)
         self._connection = Connection(url, hello, self._times, on_state, on_truth)
 
     def connect(self, timeout_s: float) -> None:

@@ -39,11 +39,11 @@ class Reader:
         """Whether the field is there and not null."""
         return self._data.get(name) is not None
 
-    def integer(self, name: str) -> int:
-        """An integer in [0, 2**53]."""
+    def integer(self, name: str, lowest: int = 0, highest: int = LARGEST_INTEGER) -> int:
+        """An integer in [lowest, highest]."""
         value = self._data.get(name)
-        if type(value) is not int or not 0 <= value <= LARGEST_INTEGER:
-            raise self._refuse(name, "an integer from 0 to 2**53")
+        if type(value) is not int or not lowest <= value <= highest:
+            raise self._refuse(name, f"an integer from {lowest} to {highest}")
         return value
 
     def boolean(self, name: str) -> bool:

@@ -44,7 +44,7 @@ class Hello:
     client: str
     control: bool
     state_every: int = 1  # send this client each n-th state
-    truth: bool = False  # a simulated arm's ground truth: tests, reports and displays only
+    truth_every: int = 0  # each n-th ground truth of a simulated arm, 0 none: tests, reports and displays only
 
     @classmethod
     def parse(cls, data: object) -> Hello:
@@ -57,8 +57,8 @@ class Hello:
             protocol,
             read.text("client", longest=80),
             read.boolean("control"),
-            int(read.number("state_every", 1, 1000)) if read.has("state_every") else 1,
-            read.boolean("truth") if read.has("truth") else False,
+            read.integer("state_every", 1, 1000) if read.has("state_every") else 1,
+            read.integer("truth_every", 0, 1000) if read.has("truth_every") else 0,
         )
 
 

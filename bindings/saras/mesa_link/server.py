@@ -152,13 +152,19 @@ class ArmServer:
         self.gate.note_state(self._tick, now)
         state = self.faults.alter(self._state(sample_time_s, period_s))
         if state is not None:
-            due = {hello.state_every for hello in self._readers.values() if self._tick % hello.state_every == 0}
-            if due:
-                await self._sio.emit("state", state.to_json(), room=[f"state_{every}" for every in due])
-        if any(hello.truth for hello in self._readers.values()):
-            truth = self._plant.truth(self._tick)
-            if truth is not None:
-                await self._sio.emit("truth", truth.__dict__, room="truth")
+            await self._publish("state", state.to_json, {hello.state_every for hello in self._readers.values()})
+        await self._publish("truth", self._truth, {hello.truth_every for hello in self._readers.values()})
+
+    async def _publish(self, event: str, data: Callable[[], object], intervals: set[int]) -> None:
+        """To the rooms whose interval is due; encoded once, and not at all when none is."""
+        rooms = [f"{event}_{every}" for every in intervals if every and self._tick % every == 0]
+        content = data() if rooms else None
+        if content is not None:
+            await self._sio.emit(event, content, room=rooms)
+
+    def _truth(self) -> object:
+        truth = self._plant.truth(self._tick)
+        return None if truth is None else truth.__dict__
 
     def _state(self, time_s: float, period_s: float) -> State:
         sample = self._plant.sample()
@@ -199,12 +205,13 @@ class ArmServer:
         return {"ok": True, "session": session, "arm": self._capabilities()}
 
     async def _subscribe(self, sid: str, hello: Hello) -> None:
-        if sid in self._readers:
-            await self._sio.leave_room(sid, f"state_{self._readers[sid].state_every}")
+        old = self._readers.get(sid)
+        if old is not None:
+            await self._sio.leave_room(sid, f"state_{old.state_every}")
+            await self._sio.leave_room(sid, f"truth_{old.truth_every}")
         self._readers[sid] = hello
         await self._sio.enter_room(sid, f"state_{hello.state_every}")
-        if hello.truth:
-            await self._sio.enter_room(sid, "truth")
+        await self._sio.enter_room(sid, f"truth_{hello.truth_every}")
 
     def _capabilities(self) -> dict[str, Any]:
         sample = self._plant.sample()
