@@ -55,7 +55,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     device.add_argument("--operator", help="simulated hands: firm, normal (default), weak or active")
     device.add_argument("--seed", help="simulated hands: another seed, another motion (default 1)")
     device.add_argument("--file", help="recorded: CSV of t,x,y,z,qx,qy,qz,qw, or a zip of such")
-    device.add_argument("--member", help="recorded: part of a name in the zip (default: left the first, right the second)")
+    device.add_argument(
+        "--member", help="recorded: part of a name in the zip (default: left the first, right the second)"
+    )
     device.add_argument(
         "--option", action="append", default=[], metavar="[SIDE.]KEY=VALUE", help="of the device; may be repeated"
     )

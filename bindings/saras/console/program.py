@@ -115,6 +115,7 @@ class Program:
         self._send_period_ns = round(1e9 / config.send_rate_hz)
         self._next_send_ns = 0
         self._last_ns: int | None = None
+        self._next_overrun_log_ns = 0
         self._was_fresh = False
         self._shown: dict[str, ChannelState | None] = dict.fromkeys(self.hands)
 
@@ -143,7 +144,9 @@ class Program:
         if dt > self._dt_max_s:
             # The guard bills what happened meanwhile and answers with no force; nothing is caught up.
             self.overruns += 1
-            log.warning("the control loop stood still for %.0f ms", dt * 1e3)
+            if now_ns >= self._next_overrun_log_ns:
+                self._next_overrun_log_ns = now_ns + 1_000_000_000
+                log.warning("the control loop stood still for %.0f ms (%d times so far)", dt * 1e3, self.overruns)
         return dt
 
     def _note_changes(self, fresh: bool) -> None:
