@@ -117,7 +117,7 @@ class Loop:
         if not second and any(id(other) not in self._pending and other.fresh for other in self._primaries):
             return
         self._pending.clear()
-        stamp_ns = max(p.stamp_ns for p in self._primaries if p.fresh)
+        stamp_ns = max(p.stamp_ns for p in self._primaries if p is primary or p.fresh)
         dt = self.period_s if self._last_stamp_ns is None else (stamp_ns - self._last_stamp_ns) / NANOSECONDS
         if dt <= 0.0 and dt > -CLOCK_STEP_S:
             self.dropped += 1  # duplicate or older than what was already used
@@ -132,11 +132,14 @@ class Loop:
         begin = time.perf_counter()
         try:
             self._step(tick)
+            if begin >= self._heartbeat_due_s:
+                self._heartbeat_due_s = begin + HEARTBEAT_S
+                self._heartbeat()
+        except rospy.ROSException as error:
+            if not rospy.core.is_shutdown_requested():  # else: topics close before the threads end
+                rospy.logerr_throttle(1.0, f"step failed: {error}")
         except Exception:  # a node that dies of one bad tick is worse than one that says so
             rospy.logerr_throttle(1.0, f"step failed: {_traceback()}")
-        if begin >= self._heartbeat_due_s:
-            self._heartbeat_due_s = begin + HEARTBEAT_S
-            self._heartbeat()
         took = time.perf_counter() - begin
         self.steps += 1
         self.busy_s += took

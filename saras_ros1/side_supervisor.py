@@ -38,7 +38,9 @@ class Watch(NamedTuple):
 class SideSupervisor:
     """One side's state. update() each period; engage() and hold() are the operator's words.
 
-    READY falls back to WAITING by itself; ENGAGED falls to HOLD, which is latched until an explicit engage.
+    READY falls back to WAITING by itself; ENGAGED falls to HOLD, which is latched until an explicit engage. Silence must
+    be seen in two updates in a row, so that one hiccup of this process latches nothing; motion and force do not wait
+    for that, each receiver's own watchdog has stopped them at the limit.
     auto_engage engages by itself once, the first time that all is there; never out of HOLD.
     """
 
@@ -50,6 +52,7 @@ class SideSupervisor:
         self.advice = ""
         self._auto = auto_engage
         self._watches: list[Watch] = []
+        self._was_missing = False
 
     def update(self, watches: list[Watch], fault: str = "") -> bool:
         """New ages, and a fault that needs no age (a pose that jumped). True when the state changed."""
@@ -59,7 +62,7 @@ class SideSupervisor:
         if self.state == State.ENGAGED:
             if fault:
                 self._hold(fault, "look at the arm, then engage again")
-            elif missing:
+            elif missing and self._was_missing:
                 self._hold(_describe(missing), missing[0].advice)
         elif self.state != State.HOLD:
             self.state = State.WAITING if missing else State.READY
@@ -67,6 +70,7 @@ class SideSupervisor:
             self.advice = missing[0].advice if missing else "engage to begin"
             if self._auto and self.state == State.READY:
                 self.engage()
+        self._was_missing = bool(missing)
         return self.state != before
 
     def engage(self, refusal: str = "") -> tuple[bool, str]:

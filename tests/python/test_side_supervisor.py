@@ -52,6 +52,7 @@ def test_engaging_is_refused_while_something_is_missing():
 @pytest.mark.parametrize("ages", [{"console_s": 0.061}, {"arm_s": 0.101}])
 def test_silence_holds_and_stays_until_engaged_again(ages):
     side = engaged()
+    assert not side.update(watches(**ages)), "one look may be our own hiccup"
     assert side.update(watches(**ages)) and side.state == State.HOLD
     assert "limit" in side.reason and side.advice
     assert not side.update(watches()) and side.state == State.HOLD
@@ -75,6 +76,7 @@ def test_auto_engage_acts_once_and_never_out_of_hold():
     side.update(watches(console_s=math.inf))
     side.update(watches())
     assert (side.state, side.engagement) == (State.ENGAGED, 1)
+    side.update(watches(console_s=1.0))
     side.update(watches(console_s=1.0))
     for _ in range(3):
         side.update(watches())
