@@ -14,7 +14,7 @@ from saras_ros1.node import Node, StartupError
 def open_driver(node: Node, *, control: bool, **options: Any) -> ArmDriver:
     """The plug-in of ~driver at ~url, connected within ~connect_wait_s, else StartupError saying what is missing.
 
-    options: further keywords of the driver (state_every, truth_every, on_state, on_truth).
+    options: further keywords of the driver (state_rate_hz, truth_rate_hz, on_state, on_truth).
     """
     name, url = node.params.text("driver"), node.params.text("url")
     wait_s = node.params.number("connect_wait_s", 0.1, 600.0)

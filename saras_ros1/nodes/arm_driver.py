@@ -40,7 +40,7 @@ class ArmDriverNode(Node):
         self.limiter = SetPointLimiter(
             **{name: limits.number(name) for name in ("speed_m_s", "speed_rad_s", "reach_m", "reach_rad", "dt_max_s")}
         )
-        self.driver = open_driver(self, control=True, state_every=self.params.integer("state_every", 1, 100))
+        self.driver = open_driver(self, control=True, state_rate_hz=self.params.number("state_rate_hz", 10.0, 1000.0))
         self.params.finish()
 
         self.channel = Channel(self, side)

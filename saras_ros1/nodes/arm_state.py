@@ -1,7 +1,7 @@
 """arm_state, one a side: reads the arm and publishes what it reports, as long as that is worth believing.
 
-Every state (200 Hz) goes through the content check and the observer; pose and wrench leave every publish_every-th
-time, joints and tool every joints_every-th. A state that is refused publishes nothing: readers see its age.
+Every state goes through the content check and the observer; pose and wrench leave at pose_rate_hz, joints and tool
+at joints_rate_hz. A state that is refused publishes nothing: readers see its age.
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ class ArmStateNode(Node):
         self.side = side = self.params.text("side", SIDES)
         self.frame = base_frame(side)
         arm_timeout_s = self.params.number("arm_timeout_s", 0.005, 1.0)
-        self.publish_every = self.params.integer("publish_every", 1, 100)
-        self.joints_every = self.params.integer("joints_every", 1, 100)
-        self.truth_every = self.params.integer("truth_every", 0, 1000)
+        self.pose_rate_hz = self.params.number("pose_rate_hz", 1.0, 1000.0)
+        self.joints_rate_hz = self.params.number("joints_rate_hz", 1.0, 1000.0)
+        truth_rate_hz = self.params.number("truth_rate_hz", 0.0, 1000.0)
         guard = self.params.section("guard")
         self.guard = StateGuard(StateGuardConfig(**{name: guard.number(name) for name in StateGuardConfig().__dict__}))
         self.wrench = ExertedWrench(
@@ -64,7 +64,7 @@ class ArmStateNode(Node):
         self.rcm = self.output(f"/mesa_{side}/rcm", PointStamped, latch=True)
         self.operating_state = self.output(f"/mesa_{side}/operating_state", String, latch=True)
         self.tf_static = tf2_ros.StaticTransformBroadcaster()
-        self.truth = self.output(f"/mesa_{side}/truth", ArmTruth) if self.truth_every else None
+        self.truth = self.output(f"/mesa_{side}/truth", ArmTruth) if truth_rate_hz else None
 
         # The arm's states come in as a topic's messages would: same age, same counters, same loop.
         self.source = Input("arm", arm_timeout_s, self._believe, self.lock)
@@ -73,9 +73,9 @@ class ArmStateNode(Node):
         self.driver = open_driver(
             self,
             control=False,
-            truth_every=self.truth_every,
+            truth_rate_hz=truth_rate_hz,
             on_state=self._on_state,
-            on_truth=self._on_truth if self.truth_every else None,
+            on_truth=self._on_truth if truth_rate_hz else None,
         )
         self.params.finish()
         self.every(0.1, self._show)
@@ -106,12 +106,12 @@ class ArmStateNode(Node):
         state = self.source.value
         wrench = self.wrench.step(state)
         self.count += 1
-        if self.count % self.publish_every == 0:
+        if self.count % _every(state, self.pose_rate_hz) == 0:
             pose = to_matrix(state.position, state.quaternion)
             self.pose.publish(convert.pose_msg(pose, self.frame, tick.stamp))
             if wrench is not None:
                 self.force.publish(convert.wrench_msg(wrench, self.frame, tick.stamp))
-        if self.count % self.joints_every == 0:
+        if self.count % _every(state, self.joints_rate_hz) == 0:
             self._publish_joints(state, tick.stamp)
         if state.rcm != self.rcm_sent:
             self._publish_rcm(state, tick.stamp)
@@ -168,6 +168,11 @@ class ArmStateNode(Node):
             values["controller"] = received.state.controller or "none"
             values.update({f"arm_dropped_{reason}": count for reason, count in received.state.dropped.items()})
         return values
+
+
+def _every(state: State, rate_hz: float) -> int:
+    """How many states make one message at rate_hz."""
+    return max(1, round(1.0 / (rate_hz * state.period_s)))
 
 
 def main() -> int:

@@ -261,3 +261,14 @@ def test_no_arm_at_all_says_so() -> None:
     with pytest.raises(ArmLinkError, match=r"no state from the arm within 0\.5 s"):
         lonely.connect(0.5)
     lonely.close()
+
+
+def test_each_reader_gets_the_rate_and_truth_that_it_asks_for() -> None:
+    truths = []
+    with arm(state_rate_hz=200.0) as server, driver(server.url, control=False) as every:
+        options = {"control": False, "state_rate_hz": 50.0, "truth_rate_hz": 20.0, "on_truth": truths.append}
+        ticks = []
+        with driver(server.url, client="slow", on_state=lambda received: ticks.append(received.state.tick), **options):
+            eventually(lambda: len(ticks) > 10 and len(truths) > 3, "states and truths")
+        assert all(tick % 4 == 0 for tick in ticks) and all(truth.tick % 10 == 0 for truth in truths)
+        assert every.stats().states > len(ticks)

@@ -26,15 +26,15 @@ class SocketIoArmDriver(ArmDriver):
         client: str,
         *,
         control: bool = True,
-        state_every: int = 1,
-        truth_every: int = 0,
+        state_rate_hz: float = 1000.0,
+        truth_rate_hz: float = 0.0,
         times: LinkTimes | None = None,
         start_distance_m: float = 0.02,
         start_angle_rad: float = 0.35,
         on_state: StateCallback | None = None,
         on_truth: TruthCallback | None = None,
     ) -> None:
-        """``state_every``: of the arm's states take each n-th; ``truth_every``: of a simulation's truths, 0 none.
+        """``state_rate_hz``: states wanted, at most the arm's own rate; ``truth_rate_hz``: a simulation's truths.
         ``start_*``: how near to the measured pose the first target after a pause, or of a session, must lie.
         Callbacks run in the connection's thread.
         """
@@ -42,7 +42,7 @@ class SocketIoArmDriver(ArmDriver):
         self._times = times or LinkTimes()
         self._start_distance_m, self._start_angle_rad = start_distance_m, start_angle_rad
         self._last_target = (0, -math.inf)  # session, local time
-        hello = Hello(PROTOCOL_VERSION, client, control, state_every, truth_every)
+        hello = Hello(PROTOCOL_VERSION, client, control, state_rate_hz, truth_rate_hz)
         self._connection = Connection(url, hello, self._times, on_state, on_truth)
 
     def connect(self, timeout_s: float) -> None:

@@ -43,8 +43,8 @@ class Hello:
     protocol: int
     client: str
     control: bool
-    state_every: int = 1  # send this client each n-th state
-    truth_every: int = 0  # each n-th ground truth of a simulated arm, 0 none: tests, reports and displays only
+    state_rate_hz: float = 1000.0  # states wanted; the arm sends the nearest whole fraction of its own rate
+    truth_rate_hz: float = 0.0  # ground truth wanted of a simulated arm, 0 none: tests, reports and displays only
 
     @classmethod
     def parse(cls, data: object) -> Hello:
@@ -57,8 +57,8 @@ class Hello:
             protocol,
             read.text("client", longest=80),
             read.boolean("control"),
-            read.integer("state_every", 1, 1000) if read.has("state_every") else 1,
-            read.integer("truth_every", 0, 1000) if read.has("truth_every") else 0,
+            read.number("state_rate_hz", 1.0, 1000.0) if read.has("state_rate_hz") else 1000.0,
+            read.number("truth_rate_hz", 0.0, 1000.0) if read.has("truth_rate_hz") else 0.0,
         )
 
 

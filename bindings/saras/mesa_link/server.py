@@ -87,7 +87,7 @@ class ArmServer:
         self._plant = plant
         self._tick = 0
         self._following = False
-        self._readers: dict[str, Hello] = {}
+        self._readers: dict[str, tuple[int, int]] = {}  # ticks between states, between truths
         self._sio = socketio.AsyncServer(
             async_mode="aiohttp",
             transports=["websocket"],
@@ -152,8 +152,8 @@ class ArmServer:
         self.gate.note_state(self._tick, now)
         state = self.faults.alter(self._state(sample_time_s, period_s))
         if state is not None:
-            await self._publish("state", state.to_json, {hello.state_every for hello in self._readers.values()})
-        await self._publish("truth", self._truth, {hello.truth_every for hello in self._readers.values()})
+            await self._publish("state", state.to_json, {every for every, _ in self._readers.values()})
+        await self._publish("truth", self._truth, {every for _, every in self._readers.values()})
 
     async def _publish(self, event: str, data: Callable[[], object], intervals: set[int]) -> None:
         """To the rooms whose interval is due; encoded once, and not at all when none is."""
@@ -205,13 +205,15 @@ class ArmServer:
         return {"ok": True, "session": session, "arm": self._capabilities()}
 
     async def _subscribe(self, sid: str, hello: Hello) -> None:
-        old = self._readers.get(sid)
-        if old is not None:
-            await self._sio.leave_room(sid, f"state_{old.state_every}")
-            await self._sio.leave_room(sid, f"truth_{old.truth_every}")
-        self._readers[sid] = hello
-        await self._sio.enter_room(sid, f"state_{hello.state_every}")
-        await self._sio.enter_room(sid, f"truth_{hello.truth_every}")
+        for event, every in zip(("state", "truth"), self._readers.get(sid, ())):
+            await self._sio.leave_room(sid, f"{event}_{every}")
+        self._readers[sid] = (self._interval(hello.state_rate_hz), self._interval(hello.truth_rate_hz))
+        for event, every in zip(("state", "truth"), self._readers[sid]):
+            await self._sio.enter_room(sid, f"{event}_{every}")
+
+    def _interval(self, rate_hz: float) -> int:
+        """Every how many ticks; 0 never."""
+        return max(1, round(self.config.state_rate_hz / rate_hz)) if rate_hz > 0.0 else 0
 
     def _capabilities(self) -> dict[str, Any]:
         sample = self._plant.sample()
