@@ -63,7 +63,7 @@ def launch_arguments(arguments: argparse.Namespace, out: Path) -> dict[str, str]
         "bag": str(out / "session.bag"),
         "operator": arguments.operator,
         "seed": str(arguments.seed),
-        "auto_engage": "true",
+        "auto_engage": "false",
         "trace_laws": "true",
         "bind_port": str(up),
         "console_port": str(down),
@@ -128,39 +128,37 @@ def publish_session_facts(arguments: argparse.Namespace) -> object:
     return publisher
 
 
-def operate(arguments: argparse.Namespace, platform: Child) -> None:
-    """Shows the live table until the time is over or Ctrl-C; DemoError when the platform ends or never engages."""
+def operate(arguments: argparse.Namespace, platform: Child) -> float | None:
+    """Engages, then shows the live table until the time is over or Ctrl-C; returns the time of day of engagement.
+
+    DemoError when the platform ends by itself or never engages.
+    """
     from rich.console import Console
     from rich.live import Live
 
-    from saras_ros1.msg import ChannelState
+    from saras_ros1.engagement import Engagement
     from saras_ros1.status import Status
 
-    status = Status()
-    console = Console()
+    status, engagement, console = Status(), Engagement(), Console()
     live = Live(console=console, auto_refresh=False) if console.is_terminal else None
-    started = time.monotonic()
-    engaged_at: float | None = None
-    said_at = 0.0
+    started, said_at = time.monotonic(), 0.0
     if live is not None:
         live.start()
     try:
         while True:
             now = time.monotonic()
-            states = status.states().values()
-            if engaged_at is None and all(
-                state is not None and state.state == ChannelState.ENGAGED for state in states
-            ):
-                engaged_at = now
             if platform.exit_code is not None:
                 raise DemoError(f"the platform ended by itself (code {platform.exit_code}):\n{platform.tail()}")
-            if engaged_at is None and now - started > START_TIMEOUT_S:
-                raise DemoError(f"not engaged within {START_TIMEOUT_S:.0f} s: {status.line()}")
-            if engaged_at is not None and arguments.duration is not None and now - engaged_at >= arguments.duration:
-                return
-            title = (
-                "starting" if engaged_at is None else f"engaged {now - engaged_at:.0f} s of {arguments.duration or '∞'}"
-            )
+            engagement.update(status.states(), now)
+            if engagement.since is None:
+                title = "starting"
+                if now - started > START_TIMEOUT_S:
+                    raise DemoError(f"not engaged within {START_TIMEOUT_S:.0f} s: {status.line()}")
+            else:
+                engaged_s = now - engagement.since
+                title = f"engaged {engaged_s:.0f} s of {arguments.duration or '∞'}"
+                if arguments.duration is not None and engaged_s >= arguments.duration:
+                    break
             if live is not None:
                 live.update(status.table(f"{title}   (Ctrl-C ends)"), refresh=True)
             elif now - said_at >= 5.0:
@@ -172,6 +170,7 @@ def operate(arguments: argparse.Namespace, platform: Child) -> None:
     finally:
         if live is not None:
             live.stop()
+    return engagement.wall_since
 
 
 def close_bag(out: Path, patience_s: float = 15.0) -> None:
@@ -202,14 +201,15 @@ def run_platform(arguments: argparse.Namespace, out: Path) -> None:
         command = ["roslaunch", str(LAUNCH_FILE), *given]
         print(f"[demo] ROS_MASTER_URI={env['ROS_MASTER_URI']}  {' '.join(command)}", flush=True)
         with Child("roslaunch", command, out / "log" / "roslaunch.log", env) as platform:
-            operate(arguments, platform)
+            engaged_at = operate(arguments, platform)
             close_bag(out)
         del facts
         rospy.signal_shutdown("demo over")
+    return engaged_at
 
 
-def conclude(arguments: argparse.Namespace, out: Path) -> list[str]:
-    """Checks the bag and writes the report; returns what went wrong."""
+def conclude(out: Path, engaged_at: float | None) -> list[str]:
+    """Checks the bag and writes the report; returns what went wrong after ``engaged_at`` (time of day)."""
     from saras import Error
     from saras.report import write_report
 
@@ -228,7 +228,9 @@ def conclude(arguments: argparse.Namespace, out: Path) -> list[str]:
     for side, bands in found.states.items():
         if not any(state == 2 for _, _, state in bands):
             problems.append(f"{side} side was never engaged")
-        problems += [f"{side} side: HOLD at {start:.2f} s" for start, _, state in bands if state == 3]
+        for start, _, state in bands:
+            if state == 3 and engaged_at is not None and found.start_s + start > engaged_at:
+                problems.append(f"{side} side: HOLD at {start:.2f} s")
     log = (out / "log" / "roslaunch.log").read_text(encoding="utf-8", errors="replace")
     problems += [line.strip() for line in log.splitlines() if "process has died" in line]
     print(f"[demo] report {report}\n[demo] bag    {bags[0]}")
@@ -249,13 +251,16 @@ def main(argv: list[str] | None = None) -> int:
     # SIGTERM ends it like Ctrl-C: children are stopped, the report is written.
     signal.signal(signal.SIGTERM, lambda *_: signal.raise_signal(signal.SIGINT))
     problems: list[str] = []
+    engaged_at: float | None = None
     try:
-        run_platform(arguments, out)
+        engaged_at = run_platform(arguments, out)
+        if engaged_at is None:
+            problems.append("ended before both sides were engaged")
     except KeyboardInterrupt:
-        problems.append("interrupted before the platform ran")
+        problems.append("interrupted while starting or stopping")
     except DemoError as error:
         problems.append(str(error))
-    problems += conclude(arguments, out)
+    problems += conclude(out, engaged_at)
     for problem in problems:
         print(f"[demo] PROBLEM {problem}", file=sys.stderr)
     print(f"[demo] {'ended with problems' if problems else 'all well'}: {out}", flush=True)

@@ -124,7 +124,7 @@ def forces(session: Session, found: Findings) -> str:
             force = np.linalg.norm(arm.measured_cf.value[:, :3], axis=1)
             tissue.line(arm.measured_cf.t, force, "estimated", "master")
         truth = arm.truth
-        columns = [f"wrench.force.{axis}" for axis in "xyz"]
+        columns = [f"tip_force.{axis}" for axis in "xyz"]
         if truth is not None and all(name in truth.columns for name in columns):
             force = np.linalg.norm(np.stack([truth[name] for name in columns], axis=1), axis=1)
             tissue.line(truth.t, force, "simulator's truth", "truth", dash=True)

@@ -96,16 +96,25 @@ def latency(session: Session, found: Findings) -> str:
 
 
 def rates(session: Session, found: Findings) -> str:
-    """Rate, period percentiles and losses of every node's topic."""
+    """Rate, period percentiles and losses of every node's topic, from the engagement of both sides on."""
     rows: list[list[Any]] = []
     for node, name, rate in found.rates:
         if rate is None:
-            rows.append([node, name, *([None] * 8)])
+            rows.append([node, name, *([None] * 9)])
             continue
-        numbers = (rate.median_hz, rate.period_p5_ms, rate.period_p99_ms, rate.longest_gap_ms)
+        numbers = (rate.mean_hz, rate.median_hz, rate.period_p5_ms, rate.period_p99_ms, rate.longest_gap_ms)
         age = None if rate.age_p99_ms is None else f"{rate.age_p99_ms:.1f}"
         rows.append([node, name, rate.count, *(f"{value:.1f}" for value in numbers), age, rate.lost, rate.restarts])
-    head = ["node", "topic", "messages", "median [Hz]", "p5 period [ms]", "p99 period [ms]", "longest gap [ms]"]
+    head = [
+        "node",
+        "topic",
+        "messages",
+        "mean [Hz]",
+        "median [Hz]",
+        "p5 period [ms]",
+        "p99 period [ms]",
+        "longest gap [ms]",
+    ]
     head += ["p99 age [ms]", "lost", "restarts"]
     return table(head, rows, align_right_from=2)
 

@@ -18,6 +18,7 @@ class Rate:
 
     topic: str
     count: int
+    mean_hz: float
     median_hz: float
     period_p5_ms: float
     period_p99_ms: float
@@ -40,22 +41,25 @@ class Latency:
     latency_ms: Floats
 
 
-def rate(topic: Topic) -> Rate | None:
-    """Rate of a topic, by time of reception; None for fewer than three messages."""
-    if len(topic) < 3:
+def rate(topic: Topic, since: float = 0.0) -> Rate | None:
+    """Rate of a topic from ``since`` [s] on, by time of reception; None for fewer than three messages."""
+    late = topic.t_received >= since
+    received = topic.t_received[late]
+    if len(received) < 3:
         return None
-    period_ms = np.diff(topic.t_received) * 1e3
-    age_ms = (topic.t_received - topic.t) * 1e3
+    period_ms = np.diff(received) * 1e3
+    age_ms = (received - topic.t[late]) * 1e3
     lost: int | None = None
     restarts = 0
     if topic.seq is not None:
-        step = np.diff(topic.seq.astype(np.int64))
+        step = np.diff(topic.seq[late].astype(np.int64))
         restarts = int((step < 0).sum())
         # A sequence that never moves is a publisher that does not count.
         lost = int((step[step > 1] - 1).sum()) if (step != 0).any() else None
     return Rate(
         topic.name,
-        len(topic),
+        len(received),
+        float(1e3 / period_ms.mean()),
         float(1e3 / np.median(period_ms)) if np.median(period_ms) > 0 else float("nan"),
         float(np.percentile(period_ms, 5)),
         float(np.percentile(period_ms, 99)),

@@ -97,9 +97,8 @@ def remote_centre_deviation(session: Session, arm: str) -> tuple[Floats, Floats,
     From the simulator's truth where recorded, else ‖(I − zzᵀ)(p_rcm − p_tip)‖ with z the shaft of the measured pose.
     """
     truth = session.arm(arm).truth
-    for field in ("rcm_deviation_m", "rcm_deviation"):
-        if truth is not None and field in truth.columns:
-            return truth.t, np.abs(truth[field].astype(float)), "simulator truth"
+    if truth is not None and "rcm_deviation" in truth.columns:
+        return truth.t, np.abs(truth["rcm_deviation"].astype(float)), "simulator's truth"
     tip, trocar = session.arm(arm).ee_pose, session.topic(f"/{arm}/rcm")
     if tip is None or trocar is None:
         return None

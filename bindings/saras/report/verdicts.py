@@ -36,6 +36,7 @@ class Verdict:
 class Findings:
     """Everything that the report computes from a session, once."""
 
+    start_s: float  #: session start as time of day [s since 1970]
     events: list[Event]
     ledger: energy.Ledger | None
     rates: list[tuple[str, str, Rate | None]]
@@ -55,16 +56,19 @@ def examine(session: Session) -> Findings:
         master = session.console(side).tracked_pose
         slave[side] = tracking.track(master, session.arm(f"mesa_{side}").ee_pose, free, grid)
         set_point[side] = tracking.track(master, session.arm(f"mesa_{side}").set_point, free, grid)
+    states = {side: state_bands(session, side) for side in SIDES}
+    since = first_engagement(states)
     rates = []
     for node, name in timing.control_topics(session):
         topic = session.topic(name)
-        rates.append((node, name, timing.rate(topic) if topic is not None else None))
+        rates.append((node, name, timing.rate(topic, since) if topic is not None else None))
     latencies = {
         side: [(name, timing.latency(session, name, source, result)) for name, source, result in timing.hops(side)]
         for side in SIDES
     }
-    states = {side: state_bands(session, side) for side in SIDES}
-    found = Findings(session.events, energy.ledger(session), rates, latencies, slave, set_point, states)
+    found = Findings(
+        session.start.timestamp(), session.events, energy.ledger(session), rates, latencies, slave, set_point, states
+    )
     found.verdicts.extend(
         [
             _engaged(found),
@@ -88,6 +92,13 @@ def state_bands(session: Session, side: str) -> list[tuple[float, float, int]]:
     starts = np.flatnonzero(np.diff(state, prepend=state[0] - 1) != 0)
     ends = np.append(topic.t[starts[1:]], topic.t[-1])
     return [(float(topic.t[i]), float(end), int(state[i])) for i, end in zip(starts, ends)]
+
+
+def first_engagement(states: dict[str, list[tuple[float, float, int]]]) -> float:
+    """When both sides had been engaged [s]; 0 when one never was. Start-up before it says nothing about rates."""
+    starts = [min((start for start, _, state in bands if state == 2), default=None) for bands in states.values()]
+    known = [start for start in starts if start is not None]
+    return max(known) if len(known) == len(SIDES) else 0.0
 
 
 def _engaged(found: Findings) -> Verdict:
@@ -150,13 +161,13 @@ def _rate(session: Session, found: Findings) -> Verdict:
     known = [(node, rate) for node, _, rate in found.rates if rate is not None]
     if not known:
         return Verdict("Node rate", "unknown", "no control topic was recorded", "unknown")
-    slowest, rate = min(known, key=lambda row: row[1].median_hz)
+    slowest, rate = min(known, key=lambda row: row[1].mean_hz)
     missing = len(found.rates) - len(known)
     detail = f"slowest: {slowest}, p99 period {rate.period_p99_ms:.1f} ms, nominal {nominal:.0f} Hz"
-    grade = "good" if rate.median_hz >= RATE_SHARE * nominal else "bad"
+    grade = "good" if rate.mean_hz >= RATE_SHARE * nominal else "bad"
     if missing and grade == "good":
         grade, detail = "unknown", f"{detail}; {missing} of {len(found.rates)} topics not recorded"
-    return Verdict("Node rate", f"{rate.median_hz:.1f} Hz", detail, grade)
+    return Verdict("Node rate", f"{rate.mean_hz:.1f} Hz", detail, grade)
 
 
 def _remote_centre(session: Session) -> Verdict:
