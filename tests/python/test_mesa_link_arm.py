@@ -8,8 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from arm_plant import HOME
-from mesa_link_peers import FakePlant
+from mesa_link_peers import HOME, FakePlant
 
 from saras import ConfigError, add_delta, displacement
 from saras.kinematics import mesa, scene
