@@ -6,7 +6,6 @@ Two handles on smooth paths, two tips that follow at half scale and 33 ms later,
 from __future__ import annotations
 
 import numpy as np
-
 from numpy_laws import exp
 
 DT_S = 0.01

@@ -1,0 +1,122 @@
+"""script/bench: ours in C++ beside peers, as a table and as JSON.
+
+Before any time is believed, the peers must compute the same: numpy_laws within 1e-9 of ours over the whole scenario,
+the C++ scenario equal to the Python one, struct_codec's bytes equal to ours.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parent))
+import peers
+import pipeline
+import scenario
+import struct_codec
+
+from saras import net
+
+GROUPS = {"teleop": ("numpy", peers.teleop), "codec": ("struct", peers.codec)}
+TOLERANCE = 1e-9
+
+
+class NotTheSame(RuntimeError):
+    """A peer computes something else: its time would say nothing."""
+
+
+def check_teleop(cpp_numbers):
+    difference = pipeline.worst_difference()
+    if not difference <= TOLERANCE:
+        raise NotTheSame(f"numpy_laws differs from saras.teleop by {difference:.1e}")
+    ours = pipeline.Ours()
+    for row in scenario.inputs():
+        _, set_points, levels = ours.step(*row)
+    expected = np.concatenate([levels, set_points[:, :3, 3].ravel()])
+    worst = float(np.abs(expected - np.array(cpp_numbers)).max())
+    if not worst <= TOLERANCE:
+        raise NotTheSame(f"the C++ scenario differs from the Python one by {worst:.1e}")
+    return max(difference, worst)
+
+
+def check_codec():
+    for packet, encode, cls in (
+        (struct_codec.example_up(), struct_codec.encode_up, net.TouchballUp),
+        (struct_codec.example_down(), struct_codec.encode_down, net.TouchballDown),
+    ):
+        data = encode(packet)
+        if cls.decode(data).encode() != data:
+            raise NotTheSame(f"struct_codec's {cls.__name__} has other bytes than ours")
+    return 0.0
+
+
+def run(groups, program):
+    """Rows of the given groups in the format of the JSON file."""
+    answer = json.loads(subprocess.run([str(program), *groups], check=True, capture_output=True, text=True).stdout)
+    rows = []
+    for group in groups:
+        peer, measure = GROUPS[group]
+        difference = check_teleop(answer["check"]) if group == "teleop" else check_codec()
+        print(f"{group}: {peer} computes the same (worst difference {difference:.0e})", file=sys.stderr)
+        times = measure()
+        for row in (row for row in answer["rows"] if row["group"] == group):
+            ours = {"p50": row["p50"], "p99": row["p99"]}
+            theirs = times[row["name"]]
+            ratio = {peer: round(theirs["p50"] / ours["p50"], 2)}
+            rows.append(
+                {
+                    "group": group,
+                    "name": row["name"],
+                    "unit": "ns",
+                    "ours": ours,
+                    "peers": {peer: theirs},
+                    "ratio": ratio,
+                }
+            )
+    return rows
+
+
+def show(rows):
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table("group", "name", "unit", title="p50 / p99 of single calls", title_justify="left")
+    for heading in ("ours", "peer", "their p50 : ours"):
+        table.add_column(heading, justify="right")
+    for row in rows:
+        for peer, times in row["peers"].items():
+            ours = f"{row['ours']['p50']:,.0f} / {row['ours']['p99']:,.0f}"
+            theirs = f"{peer} {times['p50']:,.0f} / {times['p99']:,.0f}"
+            table.add_row(row["group"], row["name"], row["unit"], ours, theirs, f"{row['ratio'][peer]:.1f}")
+    Console(width=None if sys.stdout.isatty() else 120).print(table)
+
+
+def main():
+    parser = argparse.ArgumentParser(
+        prog="script/bench", description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
+    parser.add_argument("groups", nargs="*", metavar="GROUP", help=f"of {', '.join(GROUPS)}; default: all")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the rows there too")
+    parser.add_argument("--program", type=Path, required=True, help=argparse.SUPPRESS)
+    arguments = parser.parse_args()
+    unknown = set(arguments.groups) - set(GROUPS)
+    if unknown:
+        parser.error(f"unknown group {', '.join(sorted(unknown))}; there are {', '.join(GROUPS)}")
+    try:
+        rows = run(arguments.groups or list(GROUPS), arguments.program)
+    except NotTheSame as error:
+        print(f"script/bench: {error}", file=sys.stderr)
+        return 1
+    show(rows)
+    if arguments.json:
+        arguments.json.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,34 @@
+"""The benchmark's peers compute what saras computes; else their times would mean nothing."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks"))
+import pipeline
+import struct_codec
+
+from saras import net
+
+
+def test_numpy_laws_equal_ours(many):
+    assert pipeline.worst_difference(ticks=200 if many == 1 else 1000) <= 1e-9
+
+
+def test_struct_codec_writes_our_bytes():
+    for packet, encode, cls in (
+        (struct_codec.example_up(), struct_codec.encode_up, net.TouchballUp),
+        (struct_codec.example_down(), struct_codec.encode_down, net.TouchballDown),
+    ):
+        data = encode(packet)
+        assert cls.decode(data).encode() == data
+
+
+def test_struct_codec_refuses_a_flipped_bit():
+    data = bytearray(struct_codec.encode_up(struct_codec.example_up()))
+    data[40] ^= 1
+    with pytest.raises(ValueError, match="checksum"):
+        struct_codec.decode_up(bytes(data))
