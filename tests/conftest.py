@@ -13,7 +13,10 @@ hypothesis.settings.load_profile("local")
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
-        "--many", type=int, default=int(os.environ.get("SARAS_MANY", "1")), help="multiply the number of random draws by this"
+        "--many",
+        type=int,
+        default=int(os.environ.get("SARAS_MANY", "1")),
+        help="multiply the number of random draws by this",
     )
 
 
