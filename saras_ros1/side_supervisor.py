@@ -38,9 +38,9 @@ class Watch(NamedTuple):
 class SideSupervisor:
     """One side's state. update() each period; engage() and hold() are the operator's words.
 
-    READY falls back to WAITING by itself; ENGAGED falls to HOLD, which is latched until an explicit engage. Silence must
-    be seen in two updates in a row, so that one hiccup of this process latches nothing; motion and force do not wait
-    for that, each receiver's own watchdog has stopped them at the limit.
+    READY falls back to WAITING by itself; ENGAGED falls to HOLD, which is latched until an explicit engage. Silence
+    must be seen in two updates in a row, so that one hiccup of this process latches nothing; motion and force do not
+    wait for that, each receiver's own watchdog has stopped them at the limit.
     auto_engage engages by itself once, the first time that all is there; never out of HOLD.
     """
 

@@ -55,9 +55,12 @@ class Peer:
         """Whether it can take overflow now."""
         return self._input.fresh and self._input.message.has_room
 
-    def send(self, energy_J: float, out: Any, stamp: rospy.Time) -> None:
-        """Adds energy to what this peer was sent, and tells it the sum."""
+    def send(self, energy_J: float) -> None:
+        """Adds energy to what this peer was sent."""
         self._sender.send(energy_J)
+
+    def publish(self, out: Any, stamp: rospy.Time) -> None:
+        """Tells this peer the sum, and what this tank wishes."""
         session, seq, sent_J = self._sender.next()
         message = TankExchange(
             session=session, seq=seq, sent_J=sent_J, requesting=out.requesting, has_room=out.has_room
@@ -76,7 +79,10 @@ class Tank:
         self.law.reset()
         self.peers: list[Peer] = []
         self._state_out = node.output(f"/{name}/state", TankState)
-        self._seq = 0
+        # Sums lose nothing when they are told less often.
+        self._exchange_every = node.params.integer("exchange_every", 1, 10)
+        self._state_every = node.params.integer("state_every", 1, 100)
+        self._ticks = self._seq = 0
 
     def grant_charge(self) -> None:
         """Tops the tank up to initial_J; counted in granted_J."""
@@ -92,8 +98,13 @@ class Tank:
         for peer in self.peers:
             share_J = answer_J / len(asking) if peer in asking else 0.0
             share_J += out.sent_overflow_J / len(roomy) if peer in roomy else 0.0
-            peer.send(share_J, out, stamp)
-        self._publish(out, stamp)
+            peer.send(share_J)
+        self._ticks += 1
+        if self._ticks % self._exchange_every == 0:
+            for peer in self.peers:
+                peer.publish(out, stamp)
+        if self._ticks % self._state_every == 0:
+            self._publish(out, stamp)
         return out
 
     def _publish(self, out: Any, stamp: rospy.Time) -> None:

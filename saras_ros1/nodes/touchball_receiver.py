@@ -45,9 +45,9 @@ class Outputs:
         )
         buttons = Joy(axes=[up.grip], buttons=[int(up.clutch), int(up.clip)])
         exchange.header.stamp = buttons.header.stamp = stamp
-        self.exchange.publish(exchange)
         self.buttons.publish(buttons)
         if seq % self.tool_every == 0:
+            self.exchange.publish(exchange)
             grip = JointState(name=self.grip_name, position=[up.grip])
             angles = [joints.yaw_rad, joints.pitch_rad, joints.roll_rad, joints.insertion_m]
             state = JointState(name=self.joint_names, position=angles)

@@ -10,7 +10,7 @@ from geometry_msgs.msg import Point, PointStamped, PoseStamped, WrenchStamped
 from sensor_msgs.msg import JointState
 from visualization_msgs.msg import MarkerArray
 
-from saras.kinematics import simball
+from saras.kinematics import mesa, simball
 from saras_ros1 import convert, markers
 from saras_ros1.channel import SIDES, base_frame
 from saras_ros1.latest import Latest
@@ -18,6 +18,7 @@ from saras_ros1.msg import ChannelState, TankState
 from saras_ros1.node import Node, run
 
 LABEL_HEIGHT_M = 0.25
+ARM, HANDLE = mesa.arm(), simball.handle()
 TOUCH_T_SIMBALL = np.linalg.inv(simball.SIMBALL_T_TOUCH_BASE)
 
 
@@ -28,12 +29,10 @@ class Side:
         self.side, self.frame, self.console = side, base_frame(side), f"touchball_{side}"
         self.arm_joints = Latest(f"/mesa_{side}/joint_states", JointState)
         self.tool = Latest(f"/mesa_{side}/tool", JointState)
-        self.tip = Latest(f"/mesa_{side}/ee_pose", PoseStamped)
         self.set_point = Latest(f"/mesa_{side}/set_point", PoseStamped)
         self.tissue = Latest(f"/mesa_{side}/measured_cf", WrenchStamped)
         self.rcm = Latest(f"/mesa_{side}/rcm", PointStamped)  # latched: never too old
         self.hand_joints = Latest(f"/{self.console}/joint_states", JointState)
-        self.handle = Latest(f"/{self.console}/pose", PoseStamped)
         self.hand = Latest(f"/touchball_{side}/wrench", WrenchStamped)
         self.state = Latest(f"/system/{side}/state", ChannelState)
         self.guard = Latest(f"/port_guard_{side}/state", TankState)
@@ -52,9 +51,9 @@ class Side:
                 message.position.append(tool.position[1])
             message.header.stamp = now
             self.arm_out.publish(message)
-        hand, handle = self.hand_joints.value(), self.handle.value()
-        if hand is not None and handle is not None:
-            touch = simball.touch_joints_from_handle(convert.pose(handle))
+        hand = self.hand_joints.value()
+        if hand is not None:
+            touch = simball.touch_joints_from_handle(HANDLE.forward(convert.positions(hand)))
             names = [f"{self.console}/{name}" for name in simball.TOUCH_JOINT_NAMES]
             message = JointState(name=[*hand.name, *names], position=[*hand.position, *touch.tolist()])
             message.header.stamp = now
@@ -63,8 +62,7 @@ class Side:
     def markers(self, tanks: dict[str, TankState | None]) -> list:
         """All markers of this side."""
         s, frame = self.side, self.frame
-        tip, set_point, rcm = self.tip.value(), self.set_point.value(), self.rcm.value(float("inf"))
-        at = tip.pose.position if tip is not None else None
+        set_point, rcm, at = self.set_point.value(), self.rcm.value(float("inf")), self._tip()
         if at is not None:
             self.trail.append(at)
         energies = {"guard": self.guard.value(), **tanks}
@@ -77,12 +75,21 @@ class Side:
             markers.label(f"{s} state", frame, LABEL_HEIGHT_M, self.state.value(), energies),
         ]
 
+    def _tip(self) -> Point | None:
+        """The tool tip in the arm's base, from the joints."""
+        joints = self.arm_joints.value()
+        if joints is None:
+            return None
+        angles = dict(zip(joints.name, joints.position))
+        q = [angles.get(f"mesa_{self.side}/{name}", np.nan) for name in mesa.JOINT_NAMES]
+        return Point(*ARM.forward(q)[:3, 3].tolist()) if np.isfinite(q).all() else None
+
     def _hand_in_touch(self) -> Point | None:
         """Where the hand is, in the frame of its force."""
-        handle = self.handle.value()
-        if handle is None:
+        hand = self.hand_joints.value()
+        if hand is None:
             return None
-        return Point(*(TOUCH_T_SIMBALL @ convert.pose(handle))[:3, 3].tolist())
+        return Point(*(TOUCH_T_SIMBALL @ HANDLE.forward(convert.positions(hand)))[:3, 3].tolist())
 
 
 class Visualization(Node):
