@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import copy
 
 import numpy as np
@@ -49,11 +50,12 @@ class ArmSide:
     def follow(self, base_T_set_point: Array) -> None:
         """Take the next set-point (4, 4): its point, and the roll joint that its pose needs."""
         self._target = base_T_set_point[:3, 3]
-        try:
-            pose = self._kinematics.pivot_pose(base_T_set_point, self.rcm)
+        pose = self._kinematics.pivot_pose(base_T_set_point, self.rcm)
+        if pose is None:
+            return  # in the trocar: the roll joint keeps its last target
+        # Without an answer the roll joint keeps its last target, as the arm keeps its last tip in reach.
+        with contextlib.suppress(KinematicsError):
             self._roll = float(self._kinematics.inverse(pose, self._q)[5])
-        except KinematicsError:
-            pass  # the roll joint keeps its last target, as the arm keeps its last tip in reach
 
     def tick(self, dt: float) -> None:
         """One device tick."""

@@ -69,6 +69,7 @@ class Console:
         self.position: Array = self._start.copy()
         self.roll = 0.0
         self.delivered_J = 0.0
+        self._pose: Array = np.eye(4)
 
     def receive(self, message: DownMessage, now: float) -> None:
         """Read a datagram: newest wins, the ledger sees them all."""
@@ -101,6 +102,14 @@ class Console:
         else:
             self.applied = np.clip(self._desired[0], -self._limit, self._limit)
 
+    def restart(self) -> None:
+        """Kill the console's process and start it again: its device zeroes the motors, a new session begins."""
+        self.guard.restart()
+        self.applied = np.zeros(6)
+        self._wrench = np.zeros(6)
+        self._heard_at = -np.inf
+        self._ramp = 0.0
+
     @property
     def desired(self) -> Array:
         """(6,) what the guard was asked for in the last tick."""
@@ -108,9 +117,11 @@ class Console:
         return desired
 
     def pose(self) -> Array:
-        """simball_T_handle (4, 4)."""
-        pose: Array = self._handle.forward(self._handle.inverse_position(self.position, self.roll))
-        return pose
+        """simball_T_handle (4, 4); the last one while the hand is not above the pivot."""
+        joints = self._handle.inverse_position(self.position, self.roll)
+        if joints is not None:
+            self._pose = self._handle.forward(joints)
+        return self._pose
 
     def message(self, clutch: bool) -> UpMessage:
         """Give the next datagram."""

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from saras._core.sim import ChannelConfig
 from saras.sim.arm_side import ArmSide
 from saras.sim.console import Console, DownMessage, UpMessage
-from saras.sim.exchange import EnergyBook, ExchangeMessage, TankNode
+from saras.sim.exchange import EnergyBook, ExchangeMessage
 from saras.sim.experiment import Experiment, Restart
 from saras.sim.link import Link
 from saras.sim.platform import Platform
@@ -66,7 +66,7 @@ class _Loop:
         last_graph = 0.0
         for k, (now, dt) in enumerate(zip(self.t.tolist(), self.dt.tolist())):
             while self.restarts and self.restarts[-1].time_s <= now:
-                self._tank(self.restarts.pop()).restart()
+                self._restart(self.restarts.pop())
             for arm in self.arms:
                 arm.tick(dt)
             for console, link in zip(self.consoles, self.down):
@@ -90,10 +90,11 @@ class _Loop:
             down.send(message, now)
         self.recorder.record_books(k, self.books())
 
-    def _tank(self, restart: Restart) -> TankNode:
+    def _restart(self, restart: Restart) -> None:
         if restart.tank == "guard":
-            return self.consoles[restart.side].guard
-        return self.platform.master if restart.tank == "tank_master" else self.platform.slave
+            self.consoles[restart.side].restart()
+        else:
+            (self.platform.master if restart.tank == "tank_master" else self.platform.slave).restart()
 
     def books(self) -> list[EnergyBook]:
         """Books of the guards, tank_master, tank_slave, in this order."""
