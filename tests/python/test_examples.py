@@ -14,7 +14,7 @@ EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("[0-9][0-9]_*.py
 def test_example_runs(example, tmp_path):
     arguments = []
     if "--duration" in example.read_text():
-        arguments += ["--duration", "3"]
+        arguments += ["--duration", "5"]
     picture = tmp_path / "picture.png"
     if "--plot" in example.read_text():
         pytest.importorskip("matplotlib")
