@@ -23,6 +23,7 @@ from saras_ros1.processes import Child, free_ports
 ROOT = Path(__file__).resolve().parents[1]
 LAUNCH_FILE = ROOT / "launch" / "saras_mrs.launch"
 START_TIMEOUT_S = 90.0
+LARGEST_HELD_PART = 0.1
 REQUIRED_ARGS = {"record", "operator", "bag"}
 
 
@@ -228,9 +229,12 @@ def conclude(out: Path, engaged_at: float | None) -> list[str]:
     for side, bands in found.states.items():
         if not any(state == 2 for _, _, state in bands):
             problems.append(f"{side} side was never engaged")
-        for start, _, state in bands:
-            if state == 3 and engaged_at is not None and found.start_s + start > engaged_at:
-                problems.append(f"{side} side: HOLD at {start:.2f} s")
+            continue
+        since_s = 0.0 if engaged_at is None else engaged_at - found.start_s
+        held_s = sum(max(0.0, end - max(start, since_s)) for start, end, state in bands if state == 3)
+        part = held_s / max(1e-9, bands[-1][1] - since_s)
+        if part > LARGEST_HELD_PART:
+            problems.append(f"{side} side: on HOLD for {held_s:.1f} s, {100 * part:.0f} % of the session")
     log = (out / "log" / "roslaunch.log").read_text(encoding="utf-8", errors="replace")
     problems += [line.strip() for line in log.splitlines() if "process has died" in line]
     print(f"[demo] report {report}\n[demo] bag    {bags[0]}")

@@ -1,4 +1,4 @@
-"""What an operator does at the start: looks that all is ready, and engages both sides."""
+"""What an operator does: looks that all is ready, engages both sides, and engages again after a HOLD."""
 
 from __future__ import annotations
 
@@ -11,12 +11,13 @@ from saras_ros1.msg import ChannelState
 
 SETTLE_S = 3.0  #: a side must ask for engagement for so long: nodes are still being loaded
 STEADY_S = 1.0  #: both sides must stay engaged for so long before it counts
+PATIENCE = 5  #: HOLDs a side that are answered after the start; more is more than a busy machine's hiccup
 
 
 class Engagement:
     """The operator's part: engages each side once it has settled, and knows since when both are engaged.
 
-    A HOLD before that is answered by engaging again; later ones are left as they are: they are what a demo may show.
+    A HOLD is said with its reason and answered by engaging again, after the start at most PATIENCE times a side.
     """
 
     def __init__(self) -> None:
@@ -24,24 +25,32 @@ class Engagement:
         self.wall_since: float | None = None  #: the same as time of day [s]
         self._both_since: float | None = None
         self._asking_since: dict[str, float] = {}
+        self._answered: dict[str, int] = {}
 
     def update(self, states: dict[str, ChannelState | None], now: float) -> None:
         """states: of each side, None where unknown. now: monotonic [s]."""
+        for side, state in states.items():
+            if state is None or state.state not in (ChannelState.READY, ChannelState.HOLD):
+                self._asking_since.pop(side, None)
+            elif now - self._asking_since.setdefault(side, now) > SETTLE_S:
+                self._asking_since[side] = now
+                self._answer(side, state)
         if self.since is not None:
             return
-        for side, state in states.items():
-            if state is not None and state.state in (ChannelState.READY, ChannelState.HOLD):
-                if now - self._asking_since.setdefault(side, now) > SETTLE_S:
-                    self._asking_since[side] = now
-                    engage(side)
-            else:
-                self._asking_since.pop(side, None)
         if not all(state is not None and state.state == ChannelState.ENGAGED for state in states.values()):
             self._both_since = None
         elif self._both_since is None:
             self._both_since = now
         elif now - self._both_since > STEADY_S:
             self.since, self.wall_since = now, time.time()
+
+    def _answer(self, side: str, state: ChannelState) -> None:
+        if self.since is not None:
+            if self._answered.setdefault(side, 0) >= PATIENCE:
+                return
+            self._answered[side] += 1
+            print(f"[demo] {side} held: {state.reason}: engages again", flush=True)
+        engage(side)
 
 
 def engage(side: str) -> None:

@@ -41,16 +41,18 @@ class SideSupervisor:
     READY falls back to WAITING by itself; ENGAGED falls to HOLD, which is latched until an explicit engage. Silence
     must be seen in two updates in a row, so that one hiccup of this process latches nothing; motion and force do not
     wait for that, each receiver's own watchdog has stopped them at the limit.
-    auto_engage engages by itself once, the first time that all is there; never out of HOLD.
+    auto_engage engages by itself once, when all was there for settle_updates in a row; never out of HOLD.
     """
 
-    def __init__(self, side: str, auto_engage: bool = False) -> None:
+    def __init__(self, side: str, auto_engage: bool = False, settle_updates: int = 1) -> None:
         self.side = side
         self.state = State.WAITING
         self.engagement = 0
         self.reason = "nothing was seen yet"
         self.advice = ""
         self._auto = auto_engage
+        self._settle_updates = settle_updates
+        self._ready_updates = 0
         self._watches: list[Watch] = []
         self._was_missing = False
 
@@ -68,7 +70,8 @@ class SideSupervisor:
             self.state = State.WAITING if missing else State.READY
             self.reason = _describe(missing) if missing else "all there"
             self.advice = missing[0].advice if missing else "engage to begin"
-            if self._auto and self.state == State.READY:
+            self._ready_updates = self._ready_updates + 1 if self.state == State.READY else 0
+            if self._auto and self._ready_updates >= self._settle_updates:
                 self.engage()
         self._was_missing = bool(missing)
         return self.state != before

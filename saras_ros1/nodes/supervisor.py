@@ -29,7 +29,7 @@ class Side:
 
     def __init__(self, node: Supervisor, side: str) -> None:
         self.node, self.side = node, side
-        self.table = SideSupervisor(side, node.auto_engage)
+        self.table = SideSupervisor(side, node.auto_engage, round(node.auto_engage_settle_s / node.period_s))
         pose = convert.in_frame(base_frame(side), convert.pose)
         self.buttons = node.input(f"/touchball_{side}/buttons", Joy, timeout_s=node.console_limit_s)
         self.arm = node.input(f"/mesa_{side}/ee_pose", PoseStamped, pose, timeout_s=node.arm_limit_s)
@@ -129,6 +129,7 @@ class Supervisor(Node):
         self.node_limit_s = self.params.number("node_limit_s", 0.02, 10.0)
         self.jump_limit_m = self.params.number("jump_limit_m", 0.001, 1.0)
         self.auto_engage = self.params.flag("auto_engage")
+        self.auto_engage_settle_s = self.params.number("auto_engage_settle_s", 0.1, 60.0)
         self.params.finish()
         self.master_answers = True
         self._events = self.output("/system/events", String)

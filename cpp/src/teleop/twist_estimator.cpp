@@ -26,6 +26,10 @@ TwistEstimatorOutput TwistEstimator::step(const TwistEstimatorInput& input, Seco
     return output;
   }
   if (!is_valid_time_step(dt, config_.dt_max_s)) {
+    if (dt > config_.dt_max_s) {
+      // A new baseline, or the next twist would divide the gap's displacement by its own short dt.
+      state_.base_T_previous = input.base_T_body;
+    }
     output.status = Status::kInvalidTimeStep;
     return output;
   }

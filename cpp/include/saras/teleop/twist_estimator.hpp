@@ -29,6 +29,7 @@ struct TwistEstimatorState {
 
 /// twist = displacement(previous, now) / dt (KDL::diff); filtered by y += (1 - exp(-2 pi f dt)) (x - y),
 /// the exact step response of a first-order low-pass, so that it is stable for every dt.
+/// An interval beyond dt_max_s gives no twist, and its end is the next baseline.
 class TwistEstimator {
  public:
   explicit TwistEstimator(TwistEstimatorConfig config);
