@@ -1,7 +1,8 @@
 """script/demo: the whole platform against simulated consoles and arms, recorded, with a report at the end.
 
 Everything runs on loopback with ports of its own, so that several demos and other ROS systems do not meet.
-Exit code 0: both sides were engaged for the time asked, nothing stopped, bag and report are there.
+Exit code 0: both sides were engaged for the time asked but for short HOLDs that the demo answered (a busy machine),
+no process died, bag and report are there.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from saras_ros1.processes import Child, free_ports
 ROOT = Path(__file__).resolve().parents[1]
 LAUNCH_FILE = ROOT / "launch" / "saras_mrs.launch"
 START_TIMEOUT_S = 90.0
-LARGEST_HELD_PART = 0.1
+LARGEST_HELD_PART = 0.1  #: of the session on HOLD, above which the demo was no success
 REQUIRED_ARGS = {"record", "operator", "bag"}
 
 
