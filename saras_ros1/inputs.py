@@ -46,26 +46,36 @@ class Input:
         self._seq: int | None = None
 
     def on_message(self, message: Any) -> None:
-        """Subscriber callback: converts, stores and tells the listeners (loops)."""
+        """Subscriber callback: converts, stores and tells the listeners (loops).
+
+        Only who has listeners takes the lock: a step must not see a primary input change under it. Any other input is
+        read once a step, and a newer value is as good.
+        """
         now = time.monotonic()
+        header = getattr(message, "header", None)
+        if header is not None and header.seq:
+            if self._seq is not None and header.seq > self._seq + 1:
+                self.lost += header.seq - self._seq - 1
+            self._seq = header.seq
+        try:
+            value = message if self._convert is None else self._convert(message)
+        except ValueError as error:
+            self.rejected += 1
+            rospy.logwarn_throttle(1.0, f"{self.topic}: message refused ({self.rejected} so far): {error}")
+            return
+        if not self.listeners:
+            self._store(message, value, header, now)
+            return
         with self._lock:
-            header = getattr(message, "header", None)
-            if header is not None and header.seq:
-                if self._seq is not None and header.seq > self._seq + 1:
-                    self.lost += header.seq - self._seq - 1
-                self._seq = header.seq
-            try:
-                value = message if self._convert is None else self._convert(message)
-            except ValueError as error:
-                self.rejected += 1
-                rospy.logwarn_throttle(1.0, f"{self.topic}: message refused ({self.rejected} so far): {error}")
-                return
-            self.received += 1
-            self.message, self.value, self.received_s = message, value, now
-            if header is not None:
-                self.stamp_ns = header.stamp.secs * NANOSECONDS + header.stamp.nsecs
+            self._store(message, value, header, now)
             for listener in self.listeners:
                 listener(self)
+
+    def _store(self, message: Any, value: Any, header: Any, now: float) -> None:
+        self.received += 1
+        if header is not None:
+            self.stamp_ns = header.stamp.secs * NANOSECONDS + header.stamp.nsecs
+        self.message, self.value, self.received_s = message, value, now
 
     @property
     def age_s(self) -> float:
