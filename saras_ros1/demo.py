@@ -74,11 +74,17 @@ def launch_arguments(arguments: argparse.Namespace, out: Path) -> dict[str, str]
     }
     if arguments.motion:
         wanted["motion"] = arguments.motion
-    declared = {arg.get("name") for arg in xml.etree.ElementTree.parse(LAUNCH_FILE).getroot().findall("arg")}
-    missing = (REQUIRED_ARGS | ({"motion"} if arguments.motion else set())) - declared
+    declared = declared_arguments()
+    missing = (REQUIRED_ARGS | ({"motion"} if arguments.motion else set())) - declared.keys()
     if missing:
         raise DemoError(f"{LAUNCH_FILE.name} declares no argument {', '.join(sorted(missing))}")
     return {name: value for name, value in wanted.items() if name in declared}
+
+
+def declared_arguments() -> dict[str, str | None]:
+    """Names and defaults of the launch file's arguments."""
+    root = xml.etree.ElementTree.parse(LAUNCH_FILE).getroot()
+    return {str(arg.get("name")): arg.get("default") for arg in root.findall("arg") if arg.get("value") is None}
 
 
 def environment(out: Path) -> dict[str, str]:
@@ -109,17 +115,20 @@ def wait_for_master(core: Child, timeout_s: float = 20.0) -> None:
 def publish_session_facts(arguments: argparse.Namespace) -> object:
     """Latched /saras/session: what the report's header shows. Returns the publisher; keep it."""
     import rospy
+    import yaml
     from std_msgs.msg import String
 
     import saras
 
+    nominal = yaml.safe_load((ROOT / "config" / "teleop.yaml").read_text(encoding="utf-8"))
     git = subprocess.run(
         ["git", "-C", str(ROOT), "describe", "--always", "--dirty"], capture_output=True, text=True, check=False
     )
     facts = {
         "hosting": "separate",
         "operator": arguments.operator,
-        "motion": arguments.motion,
+        "motion": arguments.motion or declared_arguments().get("motion"),
+        "rate_hz": round(1.0 / nominal["transparency"]["period_s"], 3),
         "seed": arguments.seed,
         "sim": True,
         "saras": saras.__version__,

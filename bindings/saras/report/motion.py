@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 import numpy as np
@@ -37,20 +38,50 @@ _Curve = tuple[NDArray[np.float64], NDArray[np.float64], str, str, bool]
 
 
 def _curves(session: Session, found: Findings, side: str) -> list[_Curve]:
-    """(t, (n, 3) position less its mean [mm], label, colour, dashed); the master is scaled as the fit says."""
-    fit = found.tracking[side]
-    scale = fit.scale if fit is not None else 1.0
+    """(t, (n, 3) position from the mean measured one [mm], label, colour, dashed)."""
     arm = session.arm(f"mesa_{side}")
-    rows: list[tuple[PoseSeries | None, float, str, str, bool]] = [
-        (session.console(side).tracked_pose, scale, f"master × {scale:.2f}" if fit else "master", "master", False),
-        (arm.set_point, 1.0, "set-point", "command", True),
-        (arm.ee_pose, 1.0, "measured", "measured", False),
-    ]
-    return [
-        (pose.t, 1e3 * factor * (pose.position - np.nanmean(pose.position, axis=0)), label, color, dash)
-        for pose, factor, label, color, dash in rows
-        if pose is not None
-    ]
+    tip, set_point, master = arm.ee_pose, arm.set_point, session.console(side).tracked_pose
+    origin = next((np.nanmean(pose.position, axis=0) for pose in (tip, set_point, master) if pose is not None), 0.0)
+    curves: list[_Curve] = []
+    if master is not None:
+        scale = _scale(session, found, side)
+        position = master.position if scale is None else _aligned(session, side, master, scale, tip or set_point)
+        label = "master" if scale is None else f"master × {scale:.2f}"
+        curves.append((master.t, 1e3 * (position - origin), label, "master", False))
+    for pose, label, color, dash in ((set_point, "set-point", "command", True), (tip, "measured", "measured", False)):
+        if pose is not None:
+            curves.append((pose.t, 1e3 * (pose.position - origin), label, color, dash))
+    return curves
+
+
+def _scale(session: Session, found: Findings, side: str) -> float | None:
+    """Slave metres per master metre: as configured where the laws were recorded, else as fitted."""
+    info = session.topic(f"/laws/transparency_{side}/info")
+    if info is not None:
+        try:
+            return float(json.loads(str(info["data"][-1]))["args"][0]["fields"]["scale"])
+        except (ValueError, LookupError, TypeError):
+            pass
+    fit = found.tracking[side]
+    return fit.scale if fit is not None else None
+
+
+def _aligned(
+    session: Session, side: str, master: PoseSeries, scale: float, follower: PoseSeries | None
+) -> NDArray[np.float64]:
+    """(n, 3) where the master wants the slave: scaled, with the offset of each engaged stretch; NaN between."""
+    wanted = np.full_like(master.position, np.nan)
+    if follower is None:
+        return wanted
+    active = tracking.engaged(session, side, master.t)
+    edges = np.flatnonzero(np.diff(active.astype(int), prepend=0, append=0))
+    for start, stop in zip(edges[::2], edges[1::2]):
+        moved = scale * master.position[start:stop]
+        there = np.stack(
+            [np.interp(master.t[start:stop], follower.t, column) for column in follower.position.T], axis=1
+        )
+        wanted[start:stop] = moved + (there - moved).mean(axis=0)
+    return wanted
 
 
 def _close_up(session: Session, found: Findings, side: str, curves: list[_Curve]) -> str:
@@ -101,7 +132,7 @@ def _fit_table(found: Findings) -> str:
     note = (
         "<p class='note'>Scale, constant lag and one offset a stretch, fitted over free motion: engaged, "
         f"clutch released, force below {tracking.FREE_FORCE_N} N, tanks not reducing, "
-        f"{tracking.SETTLE_S:.0f} s after any of these.</p>"
+        f"{tracking.SETTLE_S:.0f} s after any of these. The master is drawn while it is engaged.</p>"
     )
     head = ["against the mapped master", "scale", "lag [ms]", "RMS [mm]", "worst [mm]", "measured on [s]"]
     return table(head, rows) + note

@@ -46,6 +46,8 @@ def timeline(session: Session, found: Findings) -> str:
         if not found.states[side]:
             parts.append(text_at("unknown", left, y + 14, "unknown: state not recorded"))
         for start, end, state in found.states[side]:
+            # The first state is older than the recording: it was latched.
+            start = max(start, 0.0)
             name = CHANNEL_STATES.get(state, "?")
             title = f"{name} {start:.2f} – {end:.2f} s"
             css = STATE_CSS.get(state, "waiting")
@@ -57,7 +59,7 @@ def timeline(session: Session, found: Findings) -> str:
     parts.append(text_at("", left - 8, y + 4, "events", "end"))
     for event in [e for e in found.events if e.severity != "info"][:500]:
         parts.append(
-            f'<circle class="{event.severity}" cx="{left + event.t * scale:.1f}" cy="{y}" r="4">'
+            f'<circle class="{event.severity}" cx="{left + max(event.t, 0.0) * scale:.1f}" cy="{y}" r="4">'
             f"<title>{event.t:.2f} s {escape(event.source)}: {escape(event.text)}</title></circle>"
         )
     for index in range(11):

@@ -15,6 +15,7 @@ from saras.report.timing import Latency, Rate
 from saras.report.tracking import Tracking
 
 TRACKING_RMS_MM = 1.0
+SET_POINT_RMS_MM = 0.2
 REMOTE_CENTRE_MM = 0.1
 RATE_HZ = 100.0
 RATE_SHARE = 0.98  #: of the nominal rate that counts as held
@@ -75,7 +76,7 @@ def examine(session: Session) -> Findings:
             _holds(found),
             _energy(found),
             _books(found),
-            *(_tracking(side, found.tracking[side]) for side in SIDES),
+            *(_tracking(side, found.tracking[side], found.set_point_tracking[side]) for side in SIDES),
             _rate(session, found),
             _remote_centre(session),
         ]
@@ -146,14 +147,17 @@ def _books(found: Findings) -> Verdict:
     return Verdict("Energy ledger", f"{residual:.1e} J", detail, "good" if good else "bad")
 
 
-def _tracking(side: str, result: Tracking | None) -> Verdict:
+def _tracking(side: str, measured: Tracking | None, set_point: Tracking | None) -> Verdict:
     title = f"Tracking {side}"
-    if result is None:
+    if measured is None or set_point is None:
         return Verdict(title, "unknown", "not enough free motion with full tanks", "unknown")
+    good = measured.rms_mm <= TRACKING_RMS_MM and set_point.rms_mm <= SET_POINT_RMS_MM
     detail = (
-        f"RMS after lag {1e3 * result.lag_s:.0f} ms, scale {result.scale:.3f}, {result.seconds:.0f} s of free motion"
+        f"RMS after lag {1e3 * measured.lag_s:.0f} ms, scale {measured.scale:.3f}, "
+        f"{measured.seconds:.0f} s of free motion; "
+        f"set-point {set_point.rms_mm:.2f} mm after {1e3 * set_point.lag_s:.0f} ms"
     )
-    return Verdict(title, f"{result.rms_mm:.2f} mm", detail, "good" if result.rms_mm <= TRACKING_RMS_MM else "bad")
+    return Verdict(title, f"{measured.rms_mm:.2f} mm", detail, "good" if good else "bad")
 
 
 def _rate(session: Session, found: Findings) -> Verdict:
