@@ -6,8 +6,8 @@ from saras_ros1.msg import ChannelState
 from saras_ros1.node import Node
 
 SIDES = ("left", "right")
-# The supervisor publishes at 20 Hz; five missed ones mean that nobody watches this side any more.
-STATE_TIMEOUT_S = 0.25
+# The supervisor publishes at 10 Hz and at each change; three missed ones mean that nobody watches this side any more.
+STATE_TIMEOUT_S = 0.35
 
 
 def base_frame(side: str) -> str:

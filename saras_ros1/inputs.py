@@ -10,7 +10,7 @@ import rospy
 
 NANOSECONDS = 1_000_000_000
 CLOCK_STEP_S = 1.0
-HEARTBEAT_S = 0.05
+HEARTBEAT_S = 0.1
 
 
 class Tick(NamedTuple):
@@ -98,7 +98,7 @@ class Loop:
 
     With several primaries it steps once all that are alive have brought a new message, or one of them a second one:
     a dead primary never holds up the others. While all are silent for longer than their watchdog, step is called
-    once per period with tick.stale. `heartbeat` is called at most every 50 ms, by the thread that steps.
+    once per period with tick.stale. `heartbeat` is called at most every 100 ms, by the thread that steps.
     """
 
     def __init__(

@@ -25,6 +25,7 @@ class Outputs:
         self.console = f"touchball_{side}"
         self.joint_names = [f"{self.console}/{name}" for name in ("yaw", "pitch", "roll", "insertion")]
         self.grip_name = [f"{self.console}/grip"]
+        self.pressed: list[int] = []
         self.tool_every, self.guard_every = tool_every, guard_every
         self.pose = node.output(f"/{self.console}/pose", PoseStamped)
         self.joints = node.output(f"/{self.console}/joint_states", JointState)
@@ -45,7 +46,10 @@ class Outputs:
         )
         buttons = Joy(axes=[up.grip], buttons=[int(up.clutch), int(up.clip)])
         exchange.header.stamp = buttons.header.stamp = stamp
-        self.buttons.publish(buttons)
+        # A level, repeated at half the rate, and at once when it changes.
+        if seq % self.tool_every == 0 or buttons.buttons != self.pressed:
+            self.pressed = buttons.buttons
+            self.buttons.publish(buttons)
         if seq % self.tool_every == 0:
             self.exchange.publish(exchange)
             grip = JointState(name=self.grip_name, position=[up.grip])
