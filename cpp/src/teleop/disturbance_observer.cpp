@@ -15,8 +15,8 @@ void step_second_order(double omega, double zeta, const Vector3& u0, const Vecto
   // Fundamental solutions exp(-zeta omega t) {cos|cosh}(s t) and {sin|sinh}(s t)/s.
   const double decay = zeta * omega;
   const double s = omega * std::sqrt(std::abs(zeta * zeta - 1.0));
-  double even;
-  double odd;
+  double even = 0.0;
+  double odd = 0.0;
   if (s * dt < 1e-6) {
     even = std::exp(-decay * dt);
     odd = dt * even;

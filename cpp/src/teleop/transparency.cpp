@@ -125,7 +125,7 @@ Wrench Transparency::wrench_on_hand(const TransparencyInput& input, const Vector
 }
 
 Vector3 Transparency::lag(const TransparencyInput& input, Seconds dt) const {
-  const Vector3 moved = config_.scale * (input.master_pose.translation - state_.master_reference.translation);
+  Vector3 moved = config_.scale * (input.master_pose.translation - state_.master_reference.translation);
   if (config_.slave_lag_s == 0.0) {
     return moved;
   }
