@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+"""The whole platform in one go. Test methods run in alphabetical order and build on each other."""
+
+import os
+import signal
+import unittest
+import xmlrpc.client
+
+import numpy as np
+import rosgraph
+import rosnode
+import rospy
+import rostest
+import tf2_ros
+from geometry_msgs.msg import PoseStamped
+from saras_ros1.msg import ArmTruth, ChannelState, TankState
+from std_srvs.srv import Trigger
+from support import Newest, wait_until
+
+from saras_ros1 import convert
+
+SIDES = ("left", "right")
+NODES = {
+    "/frames", "/supervisor", "/touchball_receiver", "/tf_transformer_left", "/tf_transformer_right", "/transparency",
+    "/tank_master", "/tank_slave", "/velocity_integrator_left", "/velocity_integrator_right", "/tool_command",
+    "/arm_state_left", "/arm_state_right", "/arm_driver_left", "/arm_driver_right", "/visualization",
+}  # fmt: skip
+FRAMES = ["sbs_world", "rcm", "tool_tip", "set_point"]
+
+
+def kill(node):
+    """SIGKILL to a ROS node of this machine."""
+    uri = rosgraph.Master("/platform_test").lookupNode(node)
+    os.kill(xmlrpc.client.ServerProxy(uri).getPid("/platform_test")[2], signal.SIGKILL)
+
+
+class PlatformTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node("platform_test")
+        cls.state = {s: Newest(f"/system/{s}/state", ChannelState) for s in SIDES}
+        cls.set_point = {s: Newest(f"/mesa_{s}/set_point", PoseStamped) for s in SIDES}
+        cls.tip = {s: Newest(f"/mesa_{s}/ee_pose", PoseStamped) for s in SIDES}
+        cls.truth = {s: Newest(f"/mesa_{s}/truth", ArmTruth) for s in SIDES}
+        cls.guard = {s: Newest(f"/port_guard_{s}/state", TankState) for s in SIDES}
+        cls.buffer = tf2_ros.Buffer()
+        cls.listener = tf2_ros.TransformListener(cls.buffer)
+
+    def await_state(self, side, state, patience_s=60.0):
+        wait_until(
+            lambda: self.state[side].message is not None and self.state[side].message.state == state,
+            lambda: f"{side} in state {state}; last {self.state[side].message}",
+            patience_s,
+        )
+
+    def test_1_all_nodes_come_up_and_both_sides_engage(self):
+        wait_until(lambda: set(rosnode.get_node_names()) >= NODES, lambda: NODES - set(rosnode.get_node_names()))
+        for side in SIDES:
+            self.await_state(side, ChannelState.READY)
+            engage = rospy.ServiceProxy(f"/system/{side}/engage", Trigger)
+            wait_until(lambda engage=engage: engage().success, f"{side} lets itself be engaged")
+            self.await_state(side, ChannelState.ENGAGED)
+
+    def test_2_tips_follow_and_the_trocars_stay(self):
+        for side in SIDES:
+            self.set_point[side].next("after engagement")
+        rospy.sleep(8.0)
+        for side in SIDES:
+            moved = np.ptp([convert.pose(m)[:3, 3] for m in self.tip[side].all[-400:]], axis=0)
+            self.assertGreater(moved.max(), 0.005, f"{side} tip moved {moved}")
+            self.assertLess(max(m.rcm_deviation for m in self.truth[side].all), 1e-4)
+            self.assertGreater(self.guard[side].next().granted_J, 0.3)
+
+    def test_3_frames_make_one_tree(self):
+        for side in SIDES:
+            for frame in FRAMES:
+                name = f"mesa_{side}/{frame}"
+                wait_until(lambda name=name: self.buffer.can_transform("world", name, rospy.Time(0)), f"world ← {name}")
+            handle = f"touchball_{side}/handle"
+            wait_until(lambda name=handle: self.buffer.can_transform("world", name, rospy.Time(0)), handle)
+
+    def test_4_a_killed_arm_holds_its_side_alone(self):
+        kill("/arm_state_right")
+        self.await_state("right", ChannelState.HOLD)
+        self.assertIn("arm state", self.state["right"].message.reason)
+        self.assertEqual(self.state["left"].message.state, ChannelState.ENGAGED)
+        self.set_point["left"].next("the left side goes on")
+
+    def test_5_a_silent_link_holds(self):
+        kill("/touchball_receiver")
+        self.await_state("left", ChannelState.HOLD)
+        self.assertIn("console data", self.state["left"].message.reason)
+
+
+if __name__ == "__main__":
+    rostest.rosrun("saras_ros1", "platform", PlatformTest)
