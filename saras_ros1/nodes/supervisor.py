@@ -34,13 +34,7 @@ class Side:
         self.buttons = node.input(f"/touchball_{side}/buttons", Joy, timeout_s=node.console_limit_s)
         self.arm = node.input(f"/mesa_{side}/ee_pose", PoseStamped, pose, timeout_s=node.arm_limit_s)
         self.buttons.listeners.append(self._on_buttons)
-        self.nodes = (
-            f"tf_transformer_{side}",
-            f"transparency/{side}",
-            "tank_master",
-            "tank_slave",
-            f"velocity_integrator_{side}",
-        )
+        self.nodes = [name.format(s=side) for name in node.node_names]
         self.publisher = node.output(f"/system/{side}/state", ChannelState, latch=True)
         self.arm.listeners.append(self._on_arm)
         self._tip: np.ndarray | None = None
@@ -127,6 +121,7 @@ class Supervisor(Node):
         self.console_limit_s = self.params.number("console_limit_s", 0.02, 10.0)
         self.arm_limit_s = self.params.number("arm_limit_s", 0.02, 10.0)
         self.node_limit_s = self.params.number("node_limit_s", 0.02, 10.0)
+        self.node_names = self.params.texts("nodes")
         self.jump_limit_m = self.params.number("jump_limit_m", 0.001, 1.0)
         self.auto_engage = self.params.flag("auto_engage")
         self.auto_engage_settle_s = self.params.number("auto_engage_settle_s", 0.1, 60.0)
