@@ -69,7 +69,9 @@ class PlatformTest(unittest.TestCase):
             moved = np.ptp([convert.pose(m)[:3, 3] for m in self.tip[side].all[-400:]], axis=0)
             self.assertGreater(moved.max(), 0.005, f"{side} tip moved {moved}")
             self.assertLess(max(m.rcm_deviation for m in self.truth[side].all), 1e-4)
-            self.assertGreater(self.guard[side].next().granted_J, 0.3)
+            guard = self.guard[side].next()
+            # Topped up to its charge at engagement, whatever its damping had taken in before.
+            self.assertGreater(guard.granted_J, 2.0 * guard.minimum_J)
 
     def test_3_frames_make_one_tree(self):
         for side in SIDES:
