@@ -7,26 +7,38 @@ from typing import Any
 import rospy
 from std_msgs.msg import String
 
-from saras.law_trace import TracedLaw
-from saras_ros1.msg import LawTick
+from saras.law_trace import TickBatch, TracedLaw
+from saras_ros1.msg import LawTicks
+
+STEPS_PER_MESSAGE = 25
 
 
 class PublishedLaw(TracedLaw):
-    """TracedLaw with its publishers: /laws/<name> a step, /laws/<name>/info (latched JSON) when it changes."""
+    """TracedLaw with its publishers: /laws/<name>, /laws/<name>/info (latched JSON) when it changes."""
 
     def __init__(self, name: str, law_class: type, *args: Any) -> None:
         super().__init__(law_class, *args, name=name)
-        self._ticks = rospy.Publisher(f"/laws/{name}", LawTick, queue_size=20)
+        self._batch = TickBatch()
+        self._ticks = rospy.Publisher(f"/laws/{name}", LawTicks, queue_size=20)
         self._infos = rospy.Publisher(f"/laws/{name}/info", String, queue_size=5, latch=True)
         self._published_layouts = -1
+        rospy.core.add_preshutdown_hook(lambda _: self.flush())
 
     def step(self, *, dt: float, **inputs: Any) -> Any:
-        """Steps the law and publishes the step."""
+        """Steps the law; every STEPS_PER_MESSAGE steps are published together."""
         output = super().step(dt=dt, **inputs)
         if len(self._layouts) != self._published_layouts:
             self._published_layouts = len(self._layouts)
             self._infos.publish(String(self.info))
-        message = LawTick(**self.tick._asdict())
-        message.header.stamp = rospy.Time.now()
-        self._ticks.publish(message)
+        self._batch.add(self.tick, rospy.get_time())
+        if len(self._batch) >= STEPS_PER_MESSAGE:
+            self.flush()
         return output
+
+    def flush(self) -> None:
+        """Publishes what was gathered."""
+        fields = self._batch.take()
+        if fields is not None:
+            message = LawTicks(**fields)
+            message.header.stamp = rospy.Time.now()
+            self._ticks.publish(message)

@@ -1,11 +1,12 @@
 """Recording of a law's steps as flat numbers, so that a run can be replayed exactly (see ``saras.replay``).
 
-No ROS in here: a node wraps its law in a :class:`TracedLaw`, steps it, and copies ``law.tick`` into a
-``saras_ros1/LawTick``::
+No ROS in here: a node wraps its law in a :class:`TracedLaw`, steps it, and gathers ``law.tick`` for a
+``saras_ros1/LawTicks``::
 
-    law = TracedLaw(EnergyTank, config, 2, name="tank_master")
+    law, batch = TracedLaw(EnergyTank, config, 2, name="tank_master"), TickBatch()
     output = law.step(desired=…, conjugate=…, dt=dt)       # keywords only
-    publisher.publish(LawTick(header=…, **law.tick._asdict()))
+    batch.add(law.tick, time_s)
+    publisher.publish(LawTicks(header=…, **batch.take()))
 
 Values are flattened in field order: numbers and flags as one float64, arrays row by row, structs recursively.
 """
@@ -25,7 +26,7 @@ Layout = list[list[Any]]  #: one [name, kind, shape] an argument; kind: number, 
 
 
 class Tick(NamedTuple):
-    """The fields of ``saras_ros1/LawTick`` beside its header."""
+    """One step of a law in flat numbers."""
 
     seq: int
     dt: float
@@ -34,6 +35,62 @@ class Tick(NamedTuple):
     input: list[float]
     output: list[float]
     state: list[float]
+
+
+class TickBatch:
+    """Consecutive ticks, gathered into the fields of one ``saras_ros1/LawTicks``."""
+
+    def __init__(self) -> None:
+        self._ticks: list[Tick] = []
+        self._times_s: list[float] = []
+
+    def __len__(self) -> int:
+        return len(self._ticks)
+
+    def add(self, tick: Tick | None, time_s: float) -> None:
+        """A step and its time of day [s]."""
+        if tick is not None:
+            self._ticks.append(tick)
+            self._times_s.append(time_s)
+
+    def take(self) -> dict[str, Any] | None:
+        """The fields of the message; the batch is empty afterwards. None when it was."""
+        ticks, times_s = self._ticks, self._times_s
+        self._ticks, self._times_s = [], []
+        if not ticks:
+            return None
+        return {
+            "first_seq": ticks[0].seq,
+            "time_s": times_s,
+            "dt": [tick.dt for tick in ticks],
+            "layout": [tick.layout for tick in ticks],
+            "state_flag": bytes(tick.state_flag for tick in ticks),
+            "input_size": [len(tick.input) for tick in ticks],
+            "output_size": [len(tick.output) for tick in ticks],
+            "state_size": [len(tick.state) for tick in ticks],
+            "input": [number for tick in ticks for number in tick.input],
+            "output": [number for tick in ticks for number in tick.output],
+            "state": [number for tick in ticks for number in tick.state],
+        }
+
+
+def unpack(message: dict[str, Any]) -> list[tuple[float, Tick]]:
+    """(time of day [s], step) of one recorded ``saras_ros1/LawTicks``. Inverse of TickBatch."""
+    columns = {name: np.asarray(message[name], dtype=float).tolist() for name in ("input", "output", "state")}
+    at = dict.fromkeys(columns, 0)
+    ticks = []
+    for i, dt in enumerate(message["dt"]):
+        parts = []
+        for name, numbers in columns.items():
+            end = at[name] + int(message[f"{name}_size"][i])
+            if end > len(numbers):
+                raise ValueError(f"step {i} of {len(message['dt'])} needs {end} numbers of {name}, got {len(numbers)}")
+            parts.append(numbers[at[name] : end])
+            at[name] = end
+        flag = int(np.frombuffer(bytes(message["state_flag"]), dtype=np.uint8)[i])
+        seq = int(message["first_seq"]) + i
+        ticks.append((float(message["time_s"][i]), Tick(seq, float(dt), int(message["layout"][i]), flag, *parts)))
+    return ticks
 
 
 class TracedLaw:

@@ -19,11 +19,12 @@ from typing import Any
 import numpy as np
 
 from saras import Error
-from saras.law_trace import STATE_SET, STATE_UNCHANGED, Layout, flatten
+from saras.law_trace import STATE_SET, STATE_UNCHANGED, Layout, flatten, unpack
 from saras.recording import Session, Topic
 
 BOUND = 1e-12  #: largest difference that counts as equal [SI units of the output]
 LAW_PREFIX = "/laws/"
+SIZES = ("input_size", "output_size", "state_size")
 
 
 @dataclass(frozen=True)
@@ -61,15 +62,22 @@ def replay(session: Session) -> list[Comparison]:
 
 
 def replay_law(ticks: Topic, info: dict[str, Any]) -> Comparison:
-    """Replays one law from its ticks (saras_ros1/LawTick) and its description."""
+    """Replays one law from its ticks (saras_ros1/LawTicks) and its description."""
+    names = ("first_seq", "time_s", "dt", "layout", "state_flag", *SIZES, "input", "output", "state")
+    columns = {name: ticks[name] for name in names}
+    steps = [
+        (float(ticks.t[i]) + time_s - float(columns["time_s"][i][-1]), tick)  # since the session's start
+        for i in range(len(ticks))
+        for time_s, tick in unpack({name: column[i] for name, column in columns.items()})
+    ]
     law = build_law(info)
     layouts: list[Layout] = info["layouts"]
     running = False
     next_seq = -1
     compared = exact = 0
     worst, worst_field, worst_t = 0.0, "", float("nan")
-    for i in range(len(ticks)):
-        seq, flag, state = int(ticks["seq"][i]), int(ticks["state_flag"][i]), ticks["state"][i]
+    for time_s, tick in steps:
+        seq, flag, state = tick.seq, tick.state_flag, tick.state
         running = running and seq == next_seq
         next_seq = seq + 1
         if flag == STATE_SET or (not running and flag != STATE_UNCHANGED):
@@ -77,19 +85,19 @@ def replay_law(ticks: Topic, info: dict[str, Any]) -> Comparison:
             running = True
         if not running:
             continue
-        inputs = restore(layouts[int(ticks["layout"][i])], np.asarray(ticks["input"][i], dtype=float))
-        output = law.step(dt=float(ticks["dt"][i]), **inputs)
+        inputs = restore(layouts[tick.layout], np.asarray(tick.input, dtype=float))
+        output = law.step(dt=tick.dt, **inputs)
         replayed = np.array(list(flatten(output)))
-        recorded = np.asarray(ticks["output"][i], dtype=float)
+        recorded = np.asarray(tick.output, dtype=float)
         compared += 1
         if np.array_equal(recorded, replayed, equal_nan=True):
             exact += 1
             continue
         difference, place = _difference(recorded, replayed)
         if difference > worst:
-            worst, worst_field, worst_t = difference, _field_at(output, place), float(ticks.t[i])
-    skipped = len(ticks) - compared
-    return Comparison(info["name"], info["law"], len(ticks), compared, skipped, exact, worst, worst_field, worst_t)
+            worst, worst_field, worst_t = difference, _field_at(output, place), time_s
+    skipped = len(steps) - compared
+    return Comparison(info["name"], info["law"], len(steps), compared, skipped, exact, worst, worst_field, worst_t)
 
 
 def build_law(info: dict[str, Any]) -> Any:

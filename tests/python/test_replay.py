@@ -12,7 +12,7 @@ pytest.importorskip("rosbags")
 import synthetic_session as synthetic
 
 import saras
-from saras.law_trace import STATE_PERIODIC, STATE_SET, STATE_UNCHANGED, TracedLaw, flatten
+from saras.law_trace import STATE_PERIODIC, STATE_SET, STATE_UNCHANGED, TickBatch, TracedLaw, flatten
 from saras.replay import build_law, from_plain, replay_bag, unflatten
 from saras.teleop import (
     EnergyTank,
@@ -40,19 +40,35 @@ def publish(bag, name, law, tick_count, inputs, *, drop=(), tamper=None):
     """Steps a traced law and records it, as a node does."""
     topic = f"/laws/{name}"
     rng = np.random.default_rng(1)
+    batch = TickBatch()
+
+    def flush(t):
+        fields = batch.take()
+        if fields is None:
+            return
+        types = {"layout": np.uint16, "input_size": np.uint32, "output_size": np.uint32, "state_size": np.uint32}
+        for key, value in fields.items():
+            if isinstance(value, bytes):
+                fields[key] = np.frombuffer(value, dtype=np.uint8)
+            elif isinstance(value, list):
+                fields[key] = np.array(value, dtype=types.get(key, np.float64))
+        bag.put(topic, "saras_ros1/msg/LawTicks", t, header=bag.header(topic, t), **fields)
+
     for i in range(tick_count):
         t = i * 0.01
         if i == tick_count // 2 and hasattr(law, "grant"):
             law.grant(0.05)
         law.step(dt=0.01 + 1e-3 * rng.random(), **inputs(t))
-        fields = law.tick._asdict()
-        for key in ("input", "output", "state"):
-            fields[key] = np.array(fields[key])
+        tick = law.tick
         if tamper is not None and i == tamper:
-            fields["output"] = fields["output"].copy()
-            fields["output"][0] += 1e-6
-        if i not in drop:
-            bag.put(topic, "saras_ros1/msg/LawTick", t, header=bag.header(topic, t), **fields)
+            tick = tick._replace(output=[tick.output[0] + 1e-6, *tick.output[1:]])
+        if i in drop:
+            flush(t)
+        else:
+            batch.add(tick, t)
+        if len(batch) >= 7:
+            flush(t)
+    flush(tick_count * 0.01)
     bag.text(f"{topic}/info", 0.0, law.info)
 
 

@@ -16,7 +16,7 @@ from saras.mesa_link.poses import matrix_to_target, to_matrix
 from saras.mesa_link.protocol import PASSIVE_JOINTS, MaxVelocity, Reason, Target, Tool, Truth
 from saras.sim import ArmMode, ServoArm, ServoArmConfig, Tissue, TissueOutput
 
-PHYSICS_RATE_HZ = 1000.0
+PHYSICS_RATE_HZ = 500.0
 RCM_SPEED_M_S = 0.02  # a new trocar is approached this fast: the shaft tilts, it does not jump
 RCM_DISTANCE_M = 0.03  # a new trocar lies this near to the shaft
 _MODES = {"pivot": ArmMode.PIVOT, "parallel": ArmMode.PARALLEL}
