@@ -11,6 +11,7 @@ from sensor_msgs.msg import JointState
 from visualization_msgs.msg import MarkerArray
 
 from saras.kinematics import mesa, simball
+from saras.priority import DISPLAY
 from saras_ros1 import convert, markers
 from saras_ros1.channel import SIDES, base_frame
 from saras_ros1.latest import Latest
@@ -94,6 +95,8 @@ class Side:
 
 class Visualization(Node):
     """Timers only: no law steps here."""
+
+    niceness = DISPLAY
 
     def __init__(self) -> None:
         super().__init__("visualization")

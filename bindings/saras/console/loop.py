@@ -8,6 +8,8 @@ import threading
 import time
 from collections.abc import Callable
 
+from saras.priority import CONTROL, prefer
+
 
 class PeriodicLoop:
     """Calls ``step(now_ns)`` at a fixed rate until stopped or until it raises.
@@ -29,6 +31,7 @@ class PeriodicLoop:
         """Starts the thread. Garbage made so far is frozen: collections would stop the loop for milliseconds."""
         gc.collect()
         gc.freeze()
+        prefer(CONTROL)
         gc.disable()
         sys.setswitchinterval(0.0005)  # the status display must not hold the loop for 5 ms
         self._thread.start()
