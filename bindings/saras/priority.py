@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 
-CONTROL, DISPLAY = -10, 5
+CONTROL, DISPLAY = 0, 5
 
 
 def prefer(niceness: int) -> bool:

@@ -31,6 +31,7 @@ class ArmDriverNode(Node):
         period_s = self.params.number("period_s", 0.001, 0.1)
         set_point_timeout_s = self.params.number("set_point_timeout_s", 0.005, 1.0)
         self.age_limit_s = self.params.number("set_point_age_limit_s", 0.005, 1.0)
+        self.send_every = self.params.integer("send_every", 1, 10)
         self.roll_source = self.params.text("roll_source", ("tool_command", "set_point"))
         self.bounds = MaxVelocity(
             self.params.number("arm_speed_limit_m_s", 0.001, 1.0),
@@ -46,6 +47,7 @@ class ArmDriverNode(Node):
         self.channel = Channel(self, side)
         self.sending = False
         self.sent_at = 0.0
+        self.ticks = 0
         self.refused = 0
         self.last_refusal = ""
         self.bounded_session = 0
@@ -63,6 +65,9 @@ class ArmDriverNode(Node):
         """One set-point to the arm, or the one that stops it."""
         if tick.stale or not self.channel.engaged:
             self._stop()
+            return
+        self.ticks += 1
+        if self.sending and self.ticks % self.send_every:
             return
         age_s = (rospy.Time.now() - tick.stamp).to_sec()
         if abs(age_s) > self.age_limit_s:  # made before this process or its machine slept

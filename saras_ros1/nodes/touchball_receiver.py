@@ -21,12 +21,12 @@ from saras_ros1.node import Node, Tick, run
 class Outputs:
     """Topics of one handle and its port guard."""
 
-    def __init__(self, node: Node, side: str, tool_every: int, guard_every: int) -> None:
+    def __init__(self, node: Node, side: str, buttons_every: int, state_every: int) -> None:
         self.console = f"touchball_{side}"
         self.joint_names = [f"{self.console}/{name}" for name in ("yaw", "pitch", "roll", "insertion")]
         self.grip_name = [f"{self.console}/grip"]
         self.pressed: list[int] = []
-        self.tool_every, self.guard_every = tool_every, guard_every
+        self.buttons_every, self.state_every = buttons_every, state_every
         self.pose = node.output(f"/{self.console}/pose", PoseStamped)
         self.joints = node.output(f"/{self.console}/joint_states", JointState)
         self.buttons = node.output(f"/{self.console}/buttons", Joy)
@@ -46,11 +46,11 @@ class Outputs:
         )
         buttons = Joy(axes=[up.grip], buttons=[int(up.clutch), int(up.clip)])
         exchange.header.stamp = buttons.header.stamp = stamp
-        # A level, repeated at half the rate, and at once when it changes.
-        if seq % self.tool_every == 0 or buttons.buttons != self.pressed:
+        # A level, repeated at a lower rate, and at once when it changes.
+        if seq % self.buttons_every == 0 or buttons.buttons != self.pressed:
             self.pressed = buttons.buttons
             self.buttons.publish(buttons)
-        if seq % self.tool_every == 0:
+        if seq % self.state_every == 0:
             self.exchange.publish(exchange)
             grip = JointState(name=self.grip_name, position=[up.grip])
             angles = [joints.yaw_rad, joints.pitch_rad, joints.roll_rad, joints.insertion_m]
@@ -58,7 +58,6 @@ class Outputs:
             grip.header.stamp = state.header.stamp = stamp
             self.grip.publish(grip)
             self.joints.publish(state)
-        if seq % self.guard_every == 0:
             self._publish_guard(up, seq, stamp)
         self.pose.publish(convert.pose_msg(up.simball_T_handle, f"{self.console}/simball_base", stamp))
 
@@ -96,13 +95,13 @@ class TouchballReceiver(Node):
         period_s = self.params.number("period_s", 0.001, 0.1)
         wrench_timeout_s = self.params.number("wrench_timeout_s", 0.005, 1.0)
         peer_timeout_s = self.params.number("peer_timeout_s", 0.005, 2.0)
-        tool_every = self.params.integer("tool_every", 1, 100)
-        guard_every = self.params.integer("guard_every", 1, 100)
+        buttons_every = self.params.integer("buttons_every", 1, 100)
+        state_every = self.params.integer("state_every", 1, 100)
         bind = (self.params.text("bind_host"), self.params.integer("bind_port", 0, 65535))
         console = (self.params.text("console_host"), self.params.integer("console_port", 1, 65535))
         self.link = ConsoleLink(bind, console, self.params.number("age_limit_s", 0.005, 10.0))
         self.params.finish()
-        self.outputs = {side: Outputs(self, side, tool_every, guard_every) for side in SIDES}
+        self.outputs = {side: Outputs(self, side, buttons_every, state_every) for side in SIDES}
         self.channels = {side: Channel(self, side) for side in SIDES}
         self.wrenches, self.ledgers = {}, {}
         for side in SIDES:
