@@ -14,7 +14,6 @@ Values are flattened in field order: numbers and flags as one float64, arrays ro
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,6 +22,8 @@ STATE_UNCHANGED, STATE_PERIODIC, STATE_SET = 0, 1, 2
 STATE_PERIOD_TICKS = 100
 
 Layout = list[list[Any]]  #: one [name, kind, shape] an argument; kind: number, flag, integer, array, none
+
+LayoutKey = tuple[tuple[str, str, tuple[int, ...]], ...]  #: the same, hashable
 
 
 class Tick(NamedTuple):
@@ -108,6 +109,7 @@ class TracedLaw:
             "kwargs": {key: to_plain(value) for key, value in kwargs.items()},
         }
         self._layouts: list[Layout] = []
+        self._layout_indices: dict[LayoutKey, int] = {}
         self._seq = 0
         self._state_set = True
         self.tick: Tick | None = None
@@ -117,10 +119,10 @@ class TracedLaw:
         flag = STATE_SET if self._state_set else STATE_UNCHANGED
         if flag == STATE_UNCHANGED and self._seq % STATE_PERIOD_TICKS == 0:
             flag = STATE_PERIODIC
-        state = list(flatten(self._law.state)) if flag != STATE_UNCHANGED else []
+        state = flatten(self._law.state) if flag != STATE_UNCHANGED else []
         output = self._law.step(dt=dt, **inputs)
         layout, flat_input = describe(inputs)
-        self.tick = Tick(self._seq, dt, self._layout_index(layout), flag, flat_input, list(flatten(output)), state)
+        self.tick = Tick(self._seq, dt, self._layout_index(layout), flag, flat_input, flatten(output), state)
         self._seq += 1
         self._state_set = False
         return output
@@ -132,10 +134,12 @@ class TracedLaw:
         """
         return json.dumps({**self._description, "layouts": self._layouts})
 
-    def _layout_index(self, layout: Layout) -> int:
-        if layout not in self._layouts:
-            self._layouts.append(layout)
-        return self._layouts.index(layout)
+    def _layout_index(self, layout: LayoutKey) -> int:
+        index = self._layout_indices.get(layout)
+        if index is None:
+            index = self._layout_indices[layout] = len(self._layouts)
+            self._layouts.append([[name, kind, list(shape)] for name, kind, shape in layout])
+        return index
 
     def __getattr__(self, name: str) -> Any:
         value = getattr(self._law, name)
@@ -145,46 +149,62 @@ class TracedLaw:
         return value
 
 
-def flatten(value: Any) -> Iterator[float]:
+def flatten(value: Any) -> list[float]:
     """The numbers of a value in field order. None gives nothing."""
-    if value is None:
+    numbers: list[float] = []
+    _append(value, numbers)
+    return numbers
+
+
+def _append(value: Any, numbers: list[float]) -> None:
+    """Exact types first: this runs for every field of every step."""
+    kind = type(value)
+    if kind is np.ndarray:
+        numbers.extend(value.ravel().astype(float, copy=False).tolist())
+    elif kind is float:
+        numbers.append(value)
+    elif kind is bool or kind is int:
+        numbers.append(float(np.float64(value)))
+    elif value is None:
         return
-    if isinstance(value, (bool, int, float)):
-        yield float(value)
-    elif isinstance(value, np.generic):
-        yield float(value.item())
-    elif isinstance(value, np.ndarray):
-        yield from value.ravel().astype(float).tolist()
-    elif hasattr(value, "_fields"):
+    elif hasattr(kind, "_fields"):
         for field in value._fields:
-            yield from flatten(getattr(value, field))
+            _append(getattr(value, field), numbers)
+    elif isinstance(value, (bool, int, float, np.generic)):
+        numbers.append(float(np.float64(value)))
     elif isinstance(value, (list, tuple)):
         for item in value:
-            yield from flatten(item)
+            _append(item, numbers)
     elif hasattr(value, "value"):  # an enumeration such as saras.Status
-        yield float(int(value.value))
+        numbers.append(float(int(value.value)))
     else:
-        raise TypeError(f"cannot flatten {type(value).__name__}")
+        raise TypeError(f"cannot flatten {kind.__name__}")
 
 
-def describe(inputs: dict[str, Any]) -> tuple[Layout, list[float]]:
+def describe(inputs: dict[str, Any]) -> tuple[LayoutKey, list[float]]:
     """Layout and numbers of keyword arguments."""
-    layout: Layout = []
+    layout: list[tuple[str, str, tuple[int, ...]]] = []
     numbers: list[float] = []
     for name, value in inputs.items():
-        if value is None:
-            layout.append([name, "none", []])
-        elif isinstance(value, (bool, np.bool_)):
-            layout.append([name, "flag", []])
-        elif isinstance(value, (int, np.integer)):
-            layout.append([name, "integer", []])
-        elif isinstance(value, (float, np.floating)):
-            layout.append([name, "number", []])
-        else:
+        kind = _KINDS.get(type(value))
+        if kind is None:
             value = np.asarray(value, dtype=float)
-            layout.append([name, "array", list(value.shape)])
-        numbers.extend(flatten(value))
-    return layout, numbers
+            kind = "array"
+        layout.append((name, kind, value.shape if kind == "array" else ()))
+        _append(value, numbers)
+    return tuple(layout), numbers
+
+
+_KINDS = {
+    type(None): "none",
+    bool: "flag",
+    np.bool_: "flag",
+    int: "integer",
+    np.int64: "integer",
+    float: "number",
+    np.float64: "number",
+    np.ndarray: "array",
+}
 
 
 def to_plain(value: Any) -> Any:

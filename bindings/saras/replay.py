@@ -87,7 +87,7 @@ def replay_law(ticks: Topic, info: dict[str, Any]) -> Comparison:
             continue
         inputs = restore(layouts[tick.layout], np.asarray(tick.input, dtype=float))
         output = law.step(dt=tick.dt, **inputs)
-        replayed = np.array(list(flatten(output)))
+        replayed = np.array(flatten(output))
         recorded = np.asarray(tick.output, dtype=float)
         compared += 1
         if np.array_equal(recorded, replayed, equal_nan=True):
