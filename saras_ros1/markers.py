@@ -70,10 +70,10 @@ def trail(namespace: str, frame: str, points: list[Point], colour: ColorRGBA) ->
 def label(namespace: str, frame: str, height_m: float, state: Any | None, energies: dict[str, Any]) -> Marker:
     """State and energies of a side; a grey "?" for what is not known."""
     name, colour = STATE_STYLE.get(state.state, ("?", GREY)) if state is not None else ("?", GREY)
-    levels = "   ".join(f"{tank} {'?' if s is None else format(s.energy_J, '.2f')} J" for tank, s in energies.items())
+    levels = "\n".join(f"{tank} {'?' if s is None else format(s.energy_J, '.2f')} J" for tank, s in energies.items())
     marker = _marker(namespace, Marker.TEXT_VIEW_FACING, frame, colour, (0.0, 0.0, 0.025))
     marker.pose.position.z = height_m
-    marker.text = f"{name}\n{levels}"
+    marker.text = f"{namespace.split()[0]} {name}\n{levels}"
     if state is not None and state.state in (0, 3):
         marker.text += f"\n{state.reason}"
     return marker

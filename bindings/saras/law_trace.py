@@ -164,14 +164,14 @@ def _append(value: Any, numbers: list[float]) -> None:
     elif kind is float:
         numbers.append(value)
     elif kind is bool or kind is int:
-        numbers.append(float(np.float64(value)))
+        numbers.append(float(value))
     elif value is None:
         return
     elif hasattr(kind, "_fields"):
         for field in value._fields:
             _append(getattr(value, field), numbers)
-    elif isinstance(value, (bool, int, float, np.generic)):
-        numbers.append(float(np.float64(value)))
+    elif isinstance(value, np.generic):
+        numbers.append(float(value.item()))
     elif isinstance(value, (list, tuple)):
         for item in value:
             _append(item, numbers)

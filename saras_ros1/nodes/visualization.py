@@ -18,7 +18,7 @@ from saras_ros1.latest import Latest
 from saras_ros1.msg import ChannelState, TankState
 from saras_ros1.node import Node, run
 
-LABEL_HEIGHT_M = 0.25
+LABEL_HEIGHT_M = 0.33
 ARM, HANDLE = mesa.arm(), simball.handle()
 TOUCH_T_SIMBALL = np.linalg.inv(simball.SIMBALL_T_TOUCH_BASE)
 
