@@ -9,7 +9,8 @@ import rospy
 from geometry_msgs.msg import PoseStamped, TwistStamped, WrenchStamped
 from sensor_msgs.msg import Joy
 
-from saras.teleop import FrameMapping, FrameMappingConfig
+from saras import ConfigError
+from saras.teleop import FrameMapping, FrameMappingConfig, Mapping
 from saras_ros1 import convert
 from saras_ros1.channel import SIDES, base_frame
 from saras_ros1.node import Node, Tick, run
@@ -31,6 +32,8 @@ class TfTransformer(Node):
         # The frames come through tf2, from the one node that publishes the calibration.
         config = self.params.build(FrameMappingConfig, "law", base_T_console=np.eye(4), touch_T_console=np.eye(4))
         self.params.finish()
+        if config.mapping != Mapping.STATIC:
+            raise ConfigError("law/mapping = endoscope: must be static until a node publishes the camera's frames")
 
         self.base = base_frame(side)
         console, touch = f"touchball_{side}/simball_base", f"touchball_{side}/touch_base"
