@@ -10,8 +10,9 @@ from std_srvs.srv import Trigger
 from saras_ros1.msg import ChannelState
 
 SETTLE_S = 3.0  #: a side must ask for engagement for so long: nodes are still being loaded
+SETTLE_AGAIN_S = 1.0  #: the same after a HOLD: all is loaded then
 STEADY_S = 1.0  #: both sides must stay engaged for so long before it counts
-PATIENCE = 5  #: HOLDs a side that are answered after the start; more is more than a busy machine's hiccup
+PATIENCE = 20  #: HOLDs a side that are answered after the start; more is more than a busy machine's hiccup
 
 
 class Engagement:
@@ -32,7 +33,7 @@ class Engagement:
         for side, state in states.items():
             if state is None or state.state not in (ChannelState.READY, ChannelState.HOLD):
                 self._asking_since.pop(side, None)
-            elif now - self._asking_since.setdefault(side, now) > SETTLE_S:
+            elif now - self._asking_since.setdefault(side, now) > (SETTLE_S if self.since is None else SETTLE_AGAIN_S):
                 self._asking_since[side] = now
                 self._answer(side, state)
         if self.since is not None:
