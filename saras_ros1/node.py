@@ -32,7 +32,6 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from std_msgs.msg import String
 
 from saras import ConfigError, Error
-from saras.priority import CONTROL, prefer
 from saras_ros1 import direct_connection
 from saras_ros1.inputs import Input, Loop, Tick
 from saras_ros1.law_publisher import PublishedLaw
@@ -53,10 +52,7 @@ class StartupError(RuntimeError):
 class Node:
     """Base class: parameters, inputs, outputs, loops, diagnostics, clean shutdown. See the module's docstring."""
 
-    niceness = CONTROL  #: of the process; displays set priority.DISPLAY
-
     def __init__(self, name: str, *, needs_params: bool = True) -> None:
-        prefer(self.niceness)
         socket.setdefaulttimeout(SOCKET_TIMEOUT_S)
         direct_connection.install()
         rospy.core.add_preshutdown_hook(_log_shutdown)

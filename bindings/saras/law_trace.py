@@ -18,6 +18,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from saras import Error
+
 STATE_UNCHANGED, STATE_PERIODIC, STATE_SET = 0, 1, 2
 STATE_PERIOD_TICKS = 100
 
@@ -76,7 +78,11 @@ class TickBatch:
 
 
 def unpack(message: dict[str, Any]) -> list[tuple[float, Tick]]:
-    """(time of day [s], step) of one recorded ``saras_ros1/LawTicks``. Inverse of TickBatch."""
+    """(time of day [s], step) of one recorded ``saras_ros1/LawTicks``. Inverse of TickBatch.
+
+    Raises saras.Error when the numbers are fewer than the steps need.
+    """
+    flags = np.frombuffer(bytes(message["state_flag"]), dtype=np.uint8).tolist()
     columns = {name: np.asarray(message[name], dtype=float).tolist() for name in ("input", "output", "state")}
     at = dict.fromkeys(columns, 0)
     ticks = []
@@ -85,12 +91,11 @@ def unpack(message: dict[str, Any]) -> list[tuple[float, Tick]]:
         for name, numbers in columns.items():
             end = at[name] + int(message[f"{name}_size"][i])
             if end > len(numbers):
-                raise ValueError(f"step {i} of {len(message['dt'])} needs {end} numbers of {name}, got {len(numbers)}")
+                raise Error(f"step {i} of {len(message['dt'])} needs {end} numbers of {name}, got {len(numbers)}")
             parts.append(numbers[at[name] : end])
             at[name] = end
-        flag = int(np.frombuffer(bytes(message["state_flag"]), dtype=np.uint8)[i])
         seq = int(message["first_seq"]) + i
-        ticks.append((float(message["time_s"][i]), Tick(seq, float(dt), int(message["layout"][i]), flag, *parts)))
+        ticks.append((float(message["time_s"][i]), Tick(seq, float(dt), int(message["layout"][i]), flags[i], *parts)))
     return ticks
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections import deque
 
 import numpy as np
@@ -11,7 +12,6 @@ from sensor_msgs.msg import JointState
 from visualization_msgs.msg import MarkerArray
 
 from saras.kinematics import mesa, simball
-from saras.priority import DISPLAY
 from saras_ros1 import convert, markers
 from saras_ros1.channel import SIDES, base_frame
 from saras_ros1.latest import Latest
@@ -96,9 +96,8 @@ class Side:
 class Visualization(Node):
     """Timers only: no law steps here."""
 
-    niceness = DISPLAY
-
     def __init__(self) -> None:
+        os.nice(5)  # when the processor is short, control goes before pictures
         super().__init__("visualization")
         joints_hz = self.params.number("joints_hz", 1.0, 60.0)
         markers_hz = self.params.number("markers_hz", 1.0, 60.0)

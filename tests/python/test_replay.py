@@ -12,7 +12,8 @@ pytest.importorskip("rosbags")
 import synthetic_session as synthetic
 
 import saras
-from saras.law_trace import STATE_PERIODIC, STATE_SET, STATE_UNCHANGED, TickBatch, TracedLaw, flatten
+from saras import Error
+from saras.law_trace import STATE_PERIODIC, STATE_SET, STATE_UNCHANGED, TickBatch, TracedLaw, flatten, unpack
 from saras.replay import build_law, from_plain, replay_bag, unflatten
 from saras.teleop import (
     EnergyTank,
@@ -183,3 +184,14 @@ def test_a_bag_without_law_steps_says_how_to_record_them(bag):
     bag.close()
     with pytest.raises(saras.Error, match="trace_laws"):
         replay_bag(bag.path)
+
+
+def test_a_batch_with_too_few_numbers_is_refused_by_name():
+    law, batch = TracedLaw(EnergyTank, tank_config(), 2, name="tank"), TickBatch()
+    for i in range(3):
+        law.step(dt=0.01, **tank_inputs(0.01 * i))
+        batch.add(law.tick, 0.01 * i)
+    message = batch.take()
+    message["output"] = message["output"][:-1]
+    with pytest.raises(Error, match="step 2 of 3 needs .* numbers of output"):
+        unpack(message)

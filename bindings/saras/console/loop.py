@@ -8,8 +8,6 @@ import threading
 import time
 from collections.abc import Callable
 
-from saras.priority import CONTROL, prefer
-
 
 class PeriodicLoop:
     """Calls ``step(now_ns)`` at a fixed rate until stopped or until it raises.
@@ -31,7 +29,6 @@ class PeriodicLoop:
         """Starts the thread. Garbage made so far is frozen: collections would stop the loop for milliseconds."""
         gc.collect()
         gc.freeze()
-        prefer(CONTROL)
         gc.disable()
         sys.setswitchinterval(0.0005)  # the status display must not hold the loop for 5 ms
         self._thread.start()

@@ -84,7 +84,7 @@ class Console:
 
     @property
     def handle_twist(self) -> VectorSeries | None:
-        """True twist of the handle in the arm's base frame."""
+        """True twist of the handle in the arm's base frame. The demo's bags hold it in /laws/frame_mapping_* only."""
         return twist_series(self._bag.topic(f"/tf_transformer_{self.side}/handle_twist"))
 
     @property

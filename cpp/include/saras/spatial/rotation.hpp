@@ -18,7 +18,4 @@ Twist displacement(const Pose& base_T_1, const Pose& base_T_2);
 /// Moves a pose by a base-frame twist for dt. Same convention as KDL::addDelta. Keeps the quaternion unit.
 Pose add_delta(const Pose& base_T_body, const Twist& base_twist, Seconds dt);
 
-/// The nearest rotation with a positive-norm quaternion scaled to 1.
-inline Quaternion normalized(const Quaternion& q) { return q.normalized(); }
-
 }  // namespace saras
