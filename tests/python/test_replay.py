@@ -193,5 +193,5 @@ def test_a_batch_with_too_few_numbers_is_refused_by_name():
         batch.add(law.tick, 0.01 * i)
     message = batch.take()
     message["output"] = message["output"][:-1]
-    with pytest.raises(Error, match="step 2 of 3 needs .* numbers of output"):
+    with pytest.raises(Error, match=r"step 2 of 3 needs .* numbers of output"):
         unpack(message)
