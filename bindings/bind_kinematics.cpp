@@ -4,6 +4,9 @@
 #include "saras/kinematics/simball_handle.hpp"
 
 namespace saras::bindings {
+
+void bind_kinematics_dvrk(py::module_& m);
+
 namespace {
 
 void bind_chain(py::module_& m) {
@@ -173,6 +176,7 @@ void bind_kinematics(py::module_& m) {
   bind_rcm_arm_config(m);
   bind_rcm_arm(m);
   bind_simball_handle(m);
+  bind_kinematics_dvrk(m);
   m.attr("MESA_NOMINAL_RCM") = py::cast(Vector3(mesa::kNominalRcm.data()));
   m.attr("MESA_SHAFT_RADIUS_M") = mesa::kShaftRadius;
 }

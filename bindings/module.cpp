@@ -5,7 +5,7 @@ PYBIND11_MODULE(_core, m) {
   saras::bindings::bind_spatial(m);
   auto teleop = m.def_submodule("teleop", "Frame mapping, transparency, energy tanks, velocity integrator");
   saras::bindings::bind_teleop(teleop);
-  auto kinematics = m.def_submodule("kinematics", "Chains and the SARAS arm");
+  auto kinematics = m.def_submodule("kinematics", "Chains, the SARAS arm, the da Vinci");
   saras::bindings::bind_kinematics(kinematics);
   auto sim = m.def_submodule("sim", "Simulated arm, tissue, hand and network");
   saras::bindings::bind_sim(sim);

@@ -1,5 +1,5 @@
 """
-Chains and the SARAS arm
+Chains, the SARAS arm, the da Vinci
 """
 
 from __future__ import annotations
@@ -10,14 +10,23 @@ import typing
 
 __all__: list[str] = [
     "Chain",
+    "DvrkTool",
+    "Ecm",
+    "EcmConfig",
     "Joint",
     "JointType",
     "MESA_NOMINAL_RCM",
     "MESA_SHAFT_RADIUS_M",
+    "Psm",
+    "PsmConfig",
     "RcmArm",
     "RcmArmConfig",
     "SimballHandle",
     "SimballHandleConfig",
+    "dvrk_ecm_config",
+    "dvrk_find_tool",
+    "dvrk_psm_config",
+    "dvrk_tools",
 ]
 
 class JointType:
@@ -423,6 +432,265 @@ class SimballHandle:
         """
         (4, 2) lower, upper [rad], insertion [m]
         """
+
+class PsmConfig:
+    """
+    Dimensions and limits of a PSM; defaults: Classic body, 400006.
+    """
+
+    _fields: typing.ClassVar[list] = ["insertion_offset_m", "tool_length_m", "wrist_offset_m", "lower", "upper"]
+    def __copy__(self) -> PsmConfig: ...
+    def __deepcopy__(self, arg0: dict) -> PsmConfig: ...
+    def __init__(self, **kwargs) -> None:
+        """
+        Dimensions and limits of a PSM; defaults: Classic body, 400006.
+        """
+    def __repr__(self) -> str: ...
+    @property
+    def insertion_offset_m(self) -> float:
+        """
+        carriage at insertion 0 behind the centre [m]
+        """
+    @insertion_offset_m.setter
+    def insertion_offset_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def lower(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[6, 1]"]:
+        """
+        (6,) lower limits [rad], insertion [m]
+        """
+    @lower.setter
+    def lower(self, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[6, 1]"]) -> None: ...
+    @property
+    def tool_length_m(self) -> float:
+        """
+        DH d of the roll row [m]
+        """
+    @tool_length_m.setter
+    def tool_length_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def upper(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[6, 1]"]:
+        """
+        (6,) upper limits [rad], insertion [m]
+        """
+    @upper.setter
+    def upper(self, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[6, 1]"]) -> None: ...
+    @property
+    def wrist_offset_m(self) -> float:
+        """
+        wrist pitch axis to wrist yaw axis [m]
+        """
+    @wrist_offset_m.setter
+    def wrist_offset_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class Psm:
+    """
+    The da Vinci's patient side manipulator. q = [yaw, pitch, insertion, roll, wrist_pitch, wrist_yaw]
+    [rad], insertion [m]; the base frame's origin is the remote centre, its -z the shaft at zero.
+    """
+    def __init__(self, config: PsmConfig = ...) -> None: ...
+    def forward(
+        self, q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[6, 1]"]
+    ) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (4, 4) base_T_tip. Raises KinematicsError naming the joint that is not finite.
+        """
+    def inverse(
+        self, base_T_tip: numpy.typing.ArrayLike, q0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[6, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[6, 1]"]:
+        """
+        (6,) joints of a (4, 4) pose inside the limits, nearest to q0 (6,), closed form.
+        Raises KinematicsError naming joint, value, bounds.
+        """
+    def jacobian(
+        self, q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[6, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[6, 6]"]:
+        """
+        (6, 6) twist of the tip in the base frame, linear first, from joint rates.
+        """
+    def limit_violation(self, q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[6, 1]"]) -> str:
+        """
+        First joint beyond its limits with value and bounds; '' when none.
+        """
+    def shaft(
+        self, q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[6, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) unit vector from the remote centre along the shaft.
+        """
+    def wrist_position(
+        self, q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[6, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) end of the straight shaft, in the base [m].
+        """
+    @property
+    def config(self) -> PsmConfig: ...
+    @property
+    def joint_names(self) -> typing.Any: ...
+    @property
+    def limits(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 2]"]:
+        """
+        (6, 2) lower, upper [rad], insertion [m]
+        """
+
+class EcmConfig:
+    """
+    Dimensions and limits of an ECM; defaults: Classic body, straight endoscope.
+    """
+
+    _fields: typing.ClassVar[list] = ["insertion_offset_m", "endoscope_length_m", "view_angle_rad", "lower", "upper"]
+    def __copy__(self) -> EcmConfig: ...
+    def __deepcopy__(self, arg0: dict) -> EcmConfig: ...
+    def __init__(self, **kwargs) -> None:
+        """
+        Dimensions and limits of an ECM; defaults: Classic body, straight endoscope.
+        """
+    def __repr__(self) -> str: ...
+    @property
+    def endoscope_length_m(self) -> float:
+        """
+        DH d of the roll row [m]
+        """
+    @endoscope_length_m.setter
+    def endoscope_length_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def insertion_offset_m(self) -> float:
+        """
+        carriage at insertion 0 behind the centre [m]
+        """
+    @insertion_offset_m.setter
+    def insertion_offset_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def lower(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 1]"]:
+        """
+        (4,) lower limits [rad], insertion [m]
+        """
+    @lower.setter
+    def lower(self, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 1]"]) -> None: ...
+    @property
+    def upper(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 1]"]:
+        """
+        (4,) upper limits [rad], insertion [m]
+        """
+    @upper.setter
+    def upper(self, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 1]"]) -> None: ...
+    @property
+    def view_angle_rad(self) -> float:
+        """
+        lens about x, down positive [rad]
+        """
+    @view_angle_rad.setter
+    def view_angle_rad(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class Ecm:
+    """
+    The da Vinci's endoscope manipulator. q = [yaw, pitch, insertion, roll] [rad], insertion [m];
+    the base frame's origin is the remote centre, its -z the shaft at zero.
+    """
+    def __init__(self, config: EcmConfig = ...) -> None: ...
+    def forward(
+        self, q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 1]"]
+    ) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (4, 4) base_T_tip. Raises KinematicsError naming the joint that is not finite.
+        """
+    def inverse(
+        self,
+        base_T_tip: numpy.typing.ArrayLike,
+        q0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 1]"],
+        rotation_tolerance_rad: typing.SupportsFloat | typing.SupportsIndex = 1e-06,
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 1]"]:
+        """
+        (4,) joints that reach the point of a (4, 4) pose with the roll that comes nearest to its rotation.
+        Four joints cannot reach every rotation: what remains must be within rotation_tolerance_rad (pi takes
+        any). Raises KinematicsError naming joint or rotation, value, bounds.
+        """
+    def jacobian(
+        self, q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[6, 4]"]:
+        """
+        (6, 4) twist of the tip in the base frame, linear first, from joint rates.
+        """
+    def limit_violation(self, q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 1]"]) -> str:
+        """
+        First joint beyond its limits with value and bounds; '' when none.
+        """
+    def rotation_error(
+        self, base_T_tip: numpy.typing.ArrayLike, q0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 1]"]
+    ) -> float:
+        """
+        Rotation that inverse would leave [rad].
+        """
+    def shaft(
+        self, q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) unit vector from the remote centre along the endoscope.
+        """
+    @property
+    def config(self) -> EcmConfig: ...
+    @property
+    def joint_names(self) -> typing.Any: ...
+    @property
+    def limits(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 2]"]:
+        """
+        (4, 2) lower, upper [rad], insertion [m]
+        """
+
+class DvrkTool:
+    """
+    One da Vinci instrument. Angles are limits of both signs.
+    """
+    @property
+    def jaw_lower_rad(self) -> float: ...
+    @property
+    def jaw_upper_rad(self) -> float: ...
+    @property
+    def length_m(self) -> float:
+        """
+        DH d of the roll row [m]
+        """
+    @property
+    def model(self) -> str:
+        """
+        six digits
+        """
+    @property
+    def name(self) -> str:
+        """
+        as dVRK writes it
+        """
+    @property
+    def roll_limit_rad(self) -> float: ...
+    @property
+    def wrist_offset_m(self) -> float:
+        """
+        wrist pitch axis to wrist yaw axis [m]
+        """
+    @property
+    def wrist_pitch_limit_rad(self) -> float: ...
+    @property
+    def wrist_yaw_limit_rad(self) -> float: ...
+
+def dvrk_ecm_config(endoscope: str, body: str) -> EcmConfig:
+    """
+    EcmConfig of a body with an endoscope. Raises ConfigError.
+    """
+
+def dvrk_find_tool(text: str) -> DvrkTool:
+    """
+    By model ('400006') or dVRK name ('LARGE_NEEDLE_DRIVER:400006'). Raises ConfigError naming what is known.
+    """
+
+def dvrk_psm_config(tool: str, body: str) -> PsmConfig:
+    """
+    PsmConfig of a body with an instrument. Raises ConfigError.
+    """
+
+def dvrk_tools() -> list[DvrkTool]:
+    """
+    All known instruments, by model.
+    """
 
 MESA_NOMINAL_RCM: numpy.ndarray
 MESA_SHAFT_RADIUS_M: float = 0.0025

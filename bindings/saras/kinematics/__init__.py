@@ -1,4 +1,4 @@
-"""Kinematics: serial chains, the SARAS arm (``mesa``), the console's hand piece (``simball``)."""
+"""Kinematics: serial chains, the SARAS arm (``mesa``), the da Vinci (``dvrk``), the hand piece (``simball``)."""
 
 from saras._core.kinematics import (
     Chain,

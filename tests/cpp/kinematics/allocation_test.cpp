@@ -1,6 +1,8 @@
 // Nothing that a control loop calls allocates: the simulator runs these at 1 kHz.
 #include <gtest/gtest.h>
 
+#include "saras/kinematics/dvrk_ecm.hpp"
+#include "saras/kinematics/dvrk_psm.hpp"
 #include "saras/kinematics/rcm_arm.hpp"
 #include "saras/kinematics/simball_handle.hpp"
 #include "support/malloc_counter.hpp"
@@ -43,6 +45,24 @@ TEST(KinematicsAllocation, NothingInTheLoopAllocates) {
   EXPECT_EQ(allocations, 0u);
   EXPECT_TRUE(std::isfinite(sum));
   EXPECT_TRUE(all_found);
+}
+
+TEST(KinematicsAllocation, NothingInTheDaVinciAllocates) {
+  if (!test::can_count) {
+    GTEST_SKIP() << "the sanitizer owns malloc";
+  }
+  const dvrk::Psm psm;
+  const dvrk::Ecm ecm;
+  const Vector6 q = (Vector6() << 0.1, 0.2, 0.1, 0.5, 0.3, -0.2).finished();
+  const Vector4 e(0.1, 0.2, 0.1, 0.3);
+  const Pose unreachable = {Quaternion::Identity(), Vector3(1.0, 0.0, 0.0)};
+  const test::MallocCounter counter;
+  double sum = psm.jacobian(q).sum() + ecm.jacobian(e).sum();
+  sum += psm.inverse(psm.forward(q), q).q.sum() + ecm.inverse(ecm.forward(e), e, 1e-6).q.sum();
+  sum += psm.inverse(unreachable, q).q.sum() + psm.wrist_position(q).sum() + (psm.check_limits(q) ? 1.0 : 0.0);
+  const std::size_t allocations = counter.count();
+  EXPECT_EQ(allocations, 0u);
+  EXPECT_TRUE(std::isfinite(sum));
 }
 
 }  // namespace
