@@ -3,10 +3,14 @@
 
 #include <pybind11/pybind11.h>
 
+#include <functional>
+#include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "casters.hpp"
+#include "numbers.hpp"
 #include "saras/spatial/errors.hpp"
 
 namespace saras::bindings {
@@ -42,6 +46,16 @@ class Struct {
       }
       return type_name + "(" + text + ")";
     });
+    class_.def(
+        "_numbers",
+        [fields = numbers_](const T& self) {
+          std::vector<double> numbers;
+          for (const auto& append : *fields) {
+            append(self, numbers);
+          }
+          return numbers;
+        },
+        "All numbers in field order, as saras.law_trace records them.");
     class_.def("__copy__", [](const T& self) { return T(self); });
     class_.def("__deepcopy__", [](const T& self, const py::dict&) { return T(self); });
   }
@@ -51,12 +65,17 @@ class Struct {
     class_.def_property(
         name, [member](const T& self) -> Member { return self.*member; },
         [member](T& self, const Member& value) { self.*member = value; }, doc);
+    numbers_->push_back(
+        [member](const T& self, std::vector<double>& numbers) { append_numbers(self.*member, numbers); });
     return finish(name);
   }
   /// A field under another type, by getter and setter.
   template <typename Get, typename Set>
   Struct& field(const char* name, Get get, Set set, const char* doc) {
     class_.def_property(name, get, set, doc);
+    if constexpr (std::is_invocable_v<Get, const T&>) {
+      numbers_->push_back([get](const T& self, std::vector<double>& numbers) { append_numbers(get(self), numbers); });
+    }  // else: a field that Python changes in place; no law's input, output or state has one
     return finish(name);
   }
 
@@ -84,6 +103,8 @@ class Struct {
   py::class_<T> class_;
   std::string name_;
   std::vector<std::string> names_;
+  using AppendField = std::function<void(const T&, std::vector<double>&)>;
+  std::shared_ptr<std::vector<AppendField>> numbers_ = std::make_shared<std::vector<AppendField>>();
 };
 
 }  // namespace saras::bindings

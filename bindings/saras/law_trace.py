@@ -22,6 +22,7 @@ from saras import Error
 
 STATE_UNCHANGED, STATE_PERIODIC, STATE_SET = 0, 1, 2
 STATE_PERIOD_TICKS = 100
+_FLOAT = np.dtype(float)
 
 Layout = list[list[Any]]  #: one [name, kind, shape] an argument; kind: number, flag, integer, array, none
 
@@ -165,13 +166,15 @@ def _append(value: Any, numbers: list[float]) -> None:
     """Exact types first: this runs for every field of every step."""
     kind = type(value)
     if kind is np.ndarray:
-        numbers.extend(value.ravel().astype(float, copy=False).tolist())
+        numbers.extend((value if value.dtype == _FLOAT else value.astype(float)).ravel().tolist())
     elif kind is float:
         numbers.append(value)
     elif kind is bool or kind is int:
         numbers.append(float(value))
     elif value is None:
         return
+    elif hasattr(kind, "_numbers"):  # a struct of the core
+        numbers.extend(value._numbers())
     elif hasattr(kind, "_fields"):
         for field in value._fields:
             _append(getattr(value, field), numbers)
