@@ -14,6 +14,8 @@ import numpy as np
 import rospy
 from geometry_msgs.msg import PointStamped, PoseStamped, TransformStamped, TwistStamped, WrenchStamped
 
+from saras_ros1.stamped import NANOSECONDS, StampedPose, StampedTwist, StampedWrench
+
 QUATERNION_NORM_TOLERANCE = 1e-3
 
 
@@ -52,41 +54,49 @@ def quaternion(matrix: np.ndarray) -> tuple[float, float, float, float]:
     return (q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm)
 
 
-def _matrix(position, orientation) -> np.ndarray:
-    x, y, z = position.x, position.y, position.z
+def _matrix(x: float, y: float, z: float, qx: float, qy: float, qz: float, qw: float) -> np.ndarray:
     if not math.isfinite(x + y + z):
         raise ValueError(f"position ({x}, {y}, {z}) is not finite")
-    matrix = np.eye(4)
-    matrix[:3, :3] = rotation(orientation.x, orientation.y, orientation.z, orientation.w)
-    matrix[:3, 3] = (x, y, z)
+    matrix = np.zeros((4, 4))
+    matrix[:3, :3] = rotation(qx, qy, qz, qw)
+    matrix[:, 3] = (x, y, z, 1.0)
     return matrix
 
 
-def _six(linear, angular, what: str) -> np.ndarray:
-    values = (linear.x, linear.y, linear.z, angular.x, angular.y, angular.z)
+def _six(values: tuple[float, ...], what: str) -> np.ndarray:
     if not math.isfinite(sum(values)):
         raise ValueError(f"{what} {values} is not finite")
     return np.array(values)
 
 
-def pose(message: PoseStamped) -> np.ndarray:
+def pose(message: PoseStamped | StampedPose) -> np.ndarray:
     """(4, 4) frame_id_T_body."""
-    return _matrix(message.pose.position, message.pose.orientation)
+    if isinstance(message, StampedPose):
+        return _matrix(*message.numbers)
+    p, q = message.pose.position, message.pose.orientation
+    return _matrix(p.x, p.y, p.z, q.x, q.y, q.z, q.w)
 
 
 def transform(message: TransformStamped) -> np.ndarray:
     """(4, 4) frame_id_T_child."""
-    return _matrix(message.transform.translation, message.transform.rotation)
+    p, q = message.transform.translation, message.transform.rotation
+    return _matrix(p.x, p.y, p.z, q.x, q.y, q.z, q.w)
 
 
-def twist(message: TwistStamped) -> np.ndarray:
+def twist(message: TwistStamped | StampedTwist) -> np.ndarray:
     """(6,) [m/s, rad/s] in frame_id."""
-    return _six(message.twist.linear, message.twist.angular, "twist")
+    if isinstance(message, StampedTwist):
+        return _six(message.numbers, "twist")
+    v, w = message.twist.linear, message.twist.angular
+    return _six((v.x, v.y, v.z, w.x, w.y, w.z), "twist")
 
 
-def wrench(message: WrenchStamped) -> np.ndarray:
+def wrench(message: WrenchStamped | StampedWrench) -> np.ndarray:
     """(6,) [N, N m] in frame_id."""
-    return _six(message.wrench.force, message.wrench.torque, "wrench")
+    if isinstance(message, StampedWrench):
+        return _six(message.numbers, "wrench")
+    f, t = message.wrench.force, message.wrench.torque
+    return _six((f.x, f.y, f.z, t.x, t.y, t.z), "wrench")
 
 
 def point(message: PointStamped) -> np.ndarray:
@@ -116,14 +126,9 @@ def in_frame(frame_id: str, read: Callable) -> Callable:
     return check
 
 
-def pose_msg(matrix: np.ndarray, frame_id: str, stamp: rospy.Time) -> PoseStamped:
-    """PoseStamped of a (4, 4) frame_id_T_body."""
-    message = PoseStamped()
-    message.header.frame_id, message.header.stamp = frame_id, stamp
-    p, q = message.pose.position, message.pose.orientation
-    p.x, p.y, p.z = matrix[:3, 3].tolist()
-    q.x, q.y, q.z, q.w = quaternion(matrix)
-    return message
+def pose_msg(matrix: np.ndarray, frame_id: str, stamp: rospy.Time | int) -> StampedPose:
+    """A geometry_msgs/PoseStamped of a (4, 4) frame_id_T_body. stamp: ROS time, or nanoseconds since the epoch."""
+    return StampedPose((*matrix[:3, 3].tolist(), *quaternion(matrix)), frame_id, _stamp_ns(stamp))
 
 
 def transform_msg(matrix: np.ndarray, frame_id: str, child_frame_id: str, stamp: rospy.Time) -> TransformStamped:
@@ -136,19 +141,15 @@ def transform_msg(matrix: np.ndarray, frame_id: str, child_frame_id: str, stamp:
     return message
 
 
-def twist_msg(values: np.ndarray, frame_id: str, stamp: rospy.Time) -> TwistStamped:
-    """TwistStamped of a (6,) twist."""
-    message = TwistStamped()
-    message.header.frame_id, message.header.stamp = frame_id, stamp
-    v, w = message.twist.linear, message.twist.angular
-    v.x, v.y, v.z, w.x, w.y, w.z = np.asarray(values).tolist()
-    return message
+def twist_msg(values: np.ndarray, frame_id: str, stamp: rospy.Time | int) -> StampedTwist:
+    """A geometry_msgs/TwistStamped of a (6,) twist."""
+    return StampedTwist(tuple(np.asarray(values, dtype=float).tolist()), frame_id, _stamp_ns(stamp))
 
 
-def wrench_msg(values: np.ndarray, frame_id: str, stamp: rospy.Time) -> WrenchStamped:
-    """WrenchStamped of a (6,) wrench."""
-    message = WrenchStamped()
-    message.header.frame_id, message.header.stamp = frame_id, stamp
-    f, t = message.wrench.force, message.wrench.torque
-    f.x, f.y, f.z, t.x, t.y, t.z = np.asarray(values).tolist()
-    return message
+def wrench_msg(values: np.ndarray, frame_id: str, stamp: rospy.Time | int) -> StampedWrench:
+    """A geometry_msgs/WrenchStamped of a (6,) wrench."""
+    return StampedWrench(tuple(np.asarray(values, dtype=float).tolist()), frame_id, _stamp_ns(stamp))
+
+
+def _stamp_ns(stamp: rospy.Time | int) -> int:
+    return stamp if isinstance(stamp, int) else stamp.secs * NANOSECONDS + stamp.nsecs

@@ -8,7 +8,8 @@ from typing import Any, Callable, NamedTuple
 
 import rospy
 
-NANOSECONDS = 1_000_000_000
+from saras_ros1.stamped import NANOSECONDS, Stamped
+
 CLOCK_STEP_S = 1.0
 HEARTBEAT_S = 0.1
 
@@ -17,12 +18,17 @@ class Tick(NamedTuple):
     """One step of a loop.
 
     dt: seconds since the last step, from the stamps of the primary inputs, so that a recorded run replays exactly;
-    stale: the primary inputs are silent: the safe output is due; stamp: of the newest primary input, for the outputs.
+    stale: the primary inputs are silent: the safe output is due; stamp_ns: of the newest primary input, for outputs.
     """
 
     dt: float
     stale: bool
-    stamp: rospy.Time
+    stamp_ns: int
+
+    @property
+    def stamp(self) -> rospy.Time:
+        """stamp_ns as a ROS time."""
+        return rospy.Time(*divmod(self.stamp_ns, NANOSECONDS))
 
 
 class Input:
@@ -73,7 +79,9 @@ class Input:
 
     def _store(self, message: Any, value: Any, header: Any, now: float) -> None:
         self.received += 1
-        if header is not None:
+        if isinstance(message, Stamped):
+            self.stamp_ns = message.stamp_ns
+        elif header is not None:
             self.stamp_ns = header.stamp.secs * NANOSECONDS + header.stamp.nsecs
         self.message, self.value, self.received_s = message, value, now
 
@@ -136,7 +144,7 @@ class Loop:
             self.clock_steps += 1
             dt = self.period_s
         self._last_stamp_ns = stamp_ns
-        self._run(Tick(dt, False, rospy.Time(*divmod(stamp_ns, NANOSECONDS))))
+        self._run(Tick(dt, False, stamp_ns))
 
     def _run(self, tick: Tick) -> None:
         begin = time.perf_counter()
@@ -170,7 +178,7 @@ class Loop:
                     due_s = alive_until
                     continue
                 self.stale_steps += 1
-                self._run(Tick(self.period_s, True, rospy.Time.from_sec(time.time())))
+                self._run(Tick(self.period_s, True, time.time_ns()))
             due_s = max(due_s + self.period_s, now)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 import rospy
@@ -30,7 +31,7 @@ class PublishedLaw(TracedLaw):
         if len(self._layouts) != self._published_layouts:
             self._published_layouts = len(self._layouts)
             self._infos.publish(String(self.info))
-        self._batch.add(self.tick, rospy.get_time())
+        self._batch.add(self.tick, time.time())
         if len(self._batch) >= STEPS_PER_MESSAGE:
             self.flush()
         return output

@@ -11,7 +11,7 @@ import rospy
 from saras.teleop import EnergyTank, EnergyTankConfig, LedgerReceiver, LedgerSender
 from saras_ros1.inputs import Input
 from saras_ros1.msg import TankExchange, TankState
-from saras_ros1.node import Node
+from saras_ros1.node import Node, Tick
 
 
 def new_session() -> int:
@@ -88,12 +88,13 @@ class Tank:
         """Tops the tank up to initial_J; counted in granted_J."""
         self.law.grant(max(0.0, self.config.initial_J - self.law.state.energy_J))
 
-    def step(self, stamp: rospy.Time, **inputs: Any) -> Any:
+    def step(self, tick: Tick, **inputs: Any) -> Any:
         """Steps the law with the peers' credits and wishes, sends its answers, publishes the state."""
         asking = [peer for peer in self.peers if peer.requesting]
         roomy = [peer for peer in self.peers if peer.has_room]
         received_J = sum(peer.take_credit() for peer in self.peers)
-        out = self.law.step(received_J=received_J, peer_requests=len(asking), peer_has_room=bool(roomy), **inputs)
+        wishes = {"peer_requests": len(asking), "peer_has_room": bool(roomy)}
+        out = self.law.step(received_J=received_J, **wishes, dt=tick.dt, **inputs)
         answer_J = out.sent_J - out.sent_overflow_J
         for peer in self.peers:
             share_J = answer_J / len(asking) if peer in asking else 0.0
@@ -102,9 +103,9 @@ class Tank:
         self._ticks += 1
         if self._ticks % self._exchange_every == 0:
             for peer in self.peers:
-                peer.publish(out, stamp)
+                peer.publish(out, tick.stamp)
         if self._ticks % self._state_every == 0:
-            self._publish(out, stamp)
+            self._publish(out, tick.stamp)
         return out
 
     def _publish(self, out: Any, stamp: rospy.Time) -> None:

@@ -69,7 +69,7 @@ class ArmDriverNode(Node):
         self.ticks += 1
         if self.sending and self.ticks % self.send_every:
             return
-        age_s = (rospy.Time.now() - tick.stamp).to_sec()
+        age_s = rospy.get_time() - 1e-9 * tick.stamp_ns
         if abs(age_s) > self.age_limit_s:  # made before this process or its machine slept
             self._refuse(f"set-point is {1e3 * age_s:.0f} ms old")
             return

@@ -108,9 +108,9 @@ class ArmStateNode(Node):
         self.count += 1
         if self.count % _every(state, self.pose_rate_hz) == 0:
             pose = to_matrix(state.position, state.quaternion)
-            self.pose.publish(convert.pose_msg(pose, self.frame, tick.stamp))
+            self.pose.publish(convert.pose_msg(pose, self.frame, tick.stamp_ns))
             if wrench is not None:
-                self.force.publish(convert.wrench_msg(wrench, self.frame, tick.stamp))
+                self.force.publish(convert.wrench_msg(wrench, self.frame, tick.stamp_ns))
         if self.count % _every(state, self.joints_rate_hz) == 0:
             self._publish_joints(state, tick.stamp)
         if state.rcm != self.rcm_sent:

@@ -56,10 +56,10 @@ class TankMaster(Node):
             if live[i]:
                 desired[i], twist[i] = self.desired[i].value, self.twists[i].value
         stale = tick.stale or not any(live)
-        out = self.tank.step(tick.stamp, desired=desired, conjugate=twist, dt=tick.dt, work_J=0.0, stale=stale)
+        out = self.tank.step(tick, desired=desired, conjugate=twist, work_J=0.0, stale=stale)
         self.status = out.status.name
         for i, side in enumerate(SIDES):
-            self.outputs[i].publish(convert.wrench_msg(out.applied[i], base_frame(side), tick.stamp))
+            self.outputs[i].publish(convert.wrench_msg(out.applied[i], base_frame(side), tick.stamp_ns))
 
     def report(self) -> dict:
         """Level and law status."""

@@ -78,18 +78,17 @@ class TankSlave(Node):
             if live[i]:
                 desired[i], wrench[i], twist[i] = source.value, port.wrench, port.twist
         out = self.tank.step(
-            tick.stamp,
+            tick,
             desired=desired,
             conjugate=wrench,
             measured=twist,
-            dt=tick.dt,
             work_J=sum(port.work_J for port in self.ports),
             stale=tick.stale or not any(live),
         )
         self.status = out.status.name
         for i, side in enumerate(SIDES):
             applied = out.applied[i] if live[i] else np.zeros(6)
-            self.outputs[i].publish(convert.twist_msg(applied, base_frame(side), tick.stamp))
+            self.outputs[i].publish(convert.twist_msg(applied, base_frame(side), tick.stamp_ns))
 
     def report(self) -> dict:
         """Level and law status."""

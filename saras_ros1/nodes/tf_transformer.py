@@ -89,17 +89,17 @@ class TfTransformer(Node):
         self.status = out.status
         if not out.has_pose:
             return
-        self.handle_twist.publish(convert.twist_msg(out.handle_twist, self.base, tick.stamp))
-        self.tracked_twist.publish(convert.twist_msg(out.tracked_twist, self.base, tick.stamp))
-        filtered = convert.twist_msg(out.tracked_twist_filtered, self.base, tick.stamp)
+        self.handle_twist.publish(convert.twist_msg(out.handle_twist, self.base, tick.stamp_ns))
+        self.tracked_twist.publish(convert.twist_msg(out.tracked_twist, self.base, tick.stamp_ns))
+        filtered = convert.twist_msg(out.tracked_twist_filtered, self.base, tick.stamp_ns)
         self.tracked_twist_filtered.publish(filtered)
         # Last: transparency steps on the pose and finds the twists of the same tick.
-        self.tracked_pose.publish(convert.pose_msg(out.tracked_pose, self.base, tick.stamp))
+        self.tracked_pose.publish(convert.pose_msg(out.tracked_pose, self.base, tick.stamp_ns))
 
     def on_wrench(self, source) -> None:
         """Rotated only: a wrench refers to the handle in both frames (SPEC, Signs)."""
         touch_wrench = np.concatenate((self.touch_R_base @ source.value[:3], self.touch_R_base @ source.value[3:]))
-        self.touch_wrench.publish(convert.wrench_msg(touch_wrench, self.touch, source.message.header.stamp))
+        self.touch_wrench.publish(convert.wrench_msg(touch_wrench, self.touch, source.stamp_ns))
 
     def report(self) -> dict:
         """Law status for /diagnostics."""

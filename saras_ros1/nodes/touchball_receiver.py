@@ -16,6 +16,7 @@ from saras_ros1.channel import SIDES, Channel
 from saras_ros1.console_link import ConsoleLink, Received
 from saras_ros1.msg import TankExchange, TankState
 from saras_ros1.node import Node, Tick, run
+from saras_ros1.stamped import NANOSECONDS
 
 
 class Outputs:
@@ -34,8 +35,21 @@ class Outputs:
         self.exchange = node.output(f"/port_guard_{side}/exchange", TankExchange)
         self.guard = node.output(f"/port_guard_{side}/state", TankState)
 
-    def publish(self, up: TouchballUpSide, seq: int, stamp: rospy.Time) -> None:
+    def publish(self, up: TouchballUpSide, seq: int, stamp_ns: int) -> None:
         """One datagram's side. The pose goes last: who steps on it finds the buttons of the same moment."""
+        # A level, repeated at a lower rate, and at once when it changes.
+        pressed = [int(up.clutch), int(up.clip)]
+        if seq % self.buttons_every == 0 or pressed != self.pressed:
+            self.pressed = pressed
+            buttons = Joy(axes=[up.grip], buttons=pressed)
+            buttons.header.stamp = _time(stamp_ns)
+            self.buttons.publish(buttons)
+        if seq % self.state_every == 0:
+            self._publish_state(up, _time(stamp_ns))
+            self._publish_guard(up, seq, _time(stamp_ns))
+        self.pose.publish(convert.pose_msg(up.simball_T_handle, f"{self.console}/simball_base", stamp_ns))
+
+    def _publish_state(self, up: TouchballUpSide, stamp: rospy.Time) -> None:
         ledger, joints = up.ledger, up.joints
         exchange = TankExchange(
             session=ledger.session,
@@ -44,22 +58,13 @@ class Outputs:
             requesting=ledger.requesting,
             has_room=ledger.has_room,
         )
-        buttons = Joy(axes=[up.grip], buttons=[int(up.clutch), int(up.clip)])
-        exchange.header.stamp = buttons.header.stamp = stamp
-        # A level, repeated at a lower rate, and at once when it changes.
-        if seq % self.buttons_every == 0 or buttons.buttons != self.pressed:
-            self.pressed = buttons.buttons
-            self.buttons.publish(buttons)
-        if seq % self.state_every == 0:
-            self.exchange.publish(exchange)
-            grip = JointState(name=self.grip_name, position=[up.grip])
-            angles = [joints.yaw_rad, joints.pitch_rad, joints.roll_rad, joints.insertion_m]
-            state = JointState(name=self.joint_names, position=angles)
-            grip.header.stamp = state.header.stamp = stamp
-            self.grip.publish(grip)
-            self.joints.publish(state)
-            self._publish_guard(up, seq, stamp)
-        self.pose.publish(convert.pose_msg(up.simball_T_handle, f"{self.console}/simball_base", stamp))
+        grip = JointState(name=self.grip_name, position=[up.grip])
+        angles = [joints.yaw_rad, joints.pitch_rad, joints.roll_rad, joints.insertion_m]
+        state = JointState(name=self.joint_names, position=angles)
+        exchange.header.stamp = grip.header.stamp = state.header.stamp = stamp
+        self.exchange.publish(exchange)
+        self.grip.publish(grip)
+        self.joints.publish(state)
 
     def _publish_guard(self, up: TouchballUpSide, seq: int, stamp: rospy.Time) -> None:
         guard = up.guard
@@ -126,11 +131,10 @@ class TouchballReceiver(Node):
                 rospy.logwarn_throttle(1.0, f"console datagram refused: {received}; counts {self.link.counts()}")
 
     def _publish(self, packet: TouchballUp, stamp_ns: int) -> None:
-        stamp = rospy.Time(*divmod(stamp_ns, 1_000_000_000))
         for side in SIDES:
             up = getattr(packet, side)
             if up.present:
-                self.outputs[side].publish(up, packet.seq, stamp)
+                self.outputs[side].publish(up, packet.seq, stamp_ns)
 
     def send_down(self, tick: Tick) -> None:
         """What is stale goes down as zero force, HOLD, and a tank that neither asks nor takes."""
@@ -153,6 +157,10 @@ class TouchballReceiver(Node):
     def report(self) -> dict:
         """Counts and age of the link."""
         return {**self.link.counts(), "link_age_ms": round(1e3 * self.link.age_s(), 1)}
+
+
+def _time(stamp_ns: int) -> rospy.Time:
+    return rospy.Time(*divmod(stamp_ns, NANOSECONDS))
 
 
 def main() -> int:

@@ -59,8 +59,8 @@ class Side:
         return self._publish(out.desired_wrench, out.desired_twist, tick)
 
     def _publish(self, wrench: np.ndarray, twist: np.ndarray, tick: Tick) -> None:
-        self.twist_out.publish(convert.twist_msg(twist, self.frame, tick.stamp))
-        self.wrench_out.publish(convert.wrench_msg(wrench, self.frame, tick.stamp))
+        self.twist_out.publish(convert.twist_msg(twist, self.frame, tick.stamp_ns))
+        self.wrench_out.publish(convert.wrench_msg(wrench, self.frame, tick.stamp_ns))
 
 
 class TransparencyNode(Node):

@@ -61,7 +61,7 @@ class VelocityIntegratorNode(Node):
             )
         if self.last is None or not self.last.has_set_point:
             return
-        pose = convert.pose_msg(self.last.set_point, self.frame, tick.stamp)
+        pose = convert.pose_msg(self.last.set_point, self.frame, tick.stamp_ns)
         self.set_point.publish(pose)
         self.ticks += 1
         if self.ticks % self.tf_every == 0:
