@@ -10,7 +10,7 @@
             self.loop(self.step, [self.pose], period_s=0.01)     # steps when a pose arrives; else it times out
 
         def step(self, tick):                                    # under self.lock
-            if not tick.stale: self.out.publish(convert.pose_msg(self.pose.value, "world", tick.stamp))
+            if not tick.stale: self.out.publish(convert.pose_msg(self.pose.value, "world", tick.stamp_ns))
 
     def main(): return run(Relay)
 
@@ -32,10 +32,12 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from std_msgs.msg import String
 
 from saras import ConfigError, Error
-from saras_ros1 import direct_connection
+from saras_ros1 import direct_publishing, direct_reception
 from saras_ros1.inputs import Input, Loop, Tick
 from saras_ros1.law_publisher import PublishedLaw
 from saras_ros1.params import Params
+from saras_ros1.scheduling import wake_without_preempting
+from saras_ros1.stamped import lean_class
 
 __all__ = ["Input", "Loop", "Node", "StartupError", "Tick", "run"]
 
@@ -54,7 +56,9 @@ class Node:
 
     def __init__(self, name: str, *, needs_params: bool = True) -> None:
         socket.setdefaulttimeout(SOCKET_TIMEOUT_S)
-        direct_connection.install()
+        wake_without_preempting()
+        direct_publishing.install()
+        direct_reception.install()
         rospy.core.add_preshutdown_hook(_log_shutdown)
         rospy.init_node(name)
         self.name = rospy.get_name()
@@ -80,10 +84,10 @@ class Node:
         *,
         timeout_s: float = float("inf"),
     ) -> Input:
-        """Subscribes; see Input. timeout_s is its watchdog."""
+        """Subscribes; see Input. timeout_s is its watchdog. Stamped poses, twists, wrenches: saras_ros1.stamped."""
         source = Input(topic, timeout_s, convert, self.lock)
         self.inputs.append(source)
-        rospy.Subscriber(topic, message_class, source.on_message, queue_size=1, tcp_nodelay=True)
+        rospy.Subscriber(topic, lean_class(message_class), source.on_message, queue_size=1, tcp_nodelay=True)
         return source
 
     def output(self, topic: str, message_class: type, *, latch: bool = False) -> rospy.Publisher:
