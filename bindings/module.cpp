@@ -1,12 +1,16 @@
 #include "rooms.hpp"
 
 PYBIND11_MODULE(_core, m) {
-  m.doc() = "The saras core. Import the rooms: saras.teleop, saras.kinematics, saras.sim, saras.net.";
+  m.doc() =
+      "The saras core. Import the rooms: saras.teleop, saras.kinematics, saras.collision, saras.sim,\n"
+      "saras.net.";
   saras::bindings::bind_spatial(m);
   auto teleop = m.def_submodule("teleop", "Frame mapping, transparency, energy tanks, velocity integrator");
   saras::bindings::bind_teleop(teleop);
   auto kinematics = m.def_submodule("kinematics", "Chains, the SARAS arm, the da Vinci");
   saras::bindings::bind_kinematics(kinematics);
+  auto collision = m.def_submodule("collision", "Distances between tools and forbidden regions");
+  saras::bindings::bind_collision(collision);
   auto sim = m.def_submodule("sim", "Simulated arm, tissue, hand and network");
   saras::bindings::bind_sim(sim);
   auto net = m.def_submodule("net", "Datagram codecs");

@@ -8,6 +8,7 @@ namespace saras::bindings {
 void bind_spatial(pybind11::module_& m);
 void bind_teleop(pybind11::module_& m);
 void bind_kinematics(pybind11::module_& m);
+void bind_collision(pybind11::module_& m);
 void bind_sim(pybind11::module_& m);
 void bind_net(pybind11::module_& m);
 void bind_console(pybind11::module_& m);

@@ -1,5 +1,6 @@
 """
-The saras core. Import the rooms: saras.teleop, saras.kinematics, saras.sim, saras.net.
+The saras core. Import the rooms: saras.teleop, saras.kinematics, saras.collision, saras.sim,
+saras.net.
 """
 
 from __future__ import annotations
@@ -8,6 +9,7 @@ import numpy.typing
 import typing
 from . import teleop
 from . import kinematics
+from . import collision
 from . import sim
 from . import net
 from . import console
@@ -19,6 +21,7 @@ __all__: list[str] = [
     "ProtocolError",
     "Status",
     "add_delta",
+    "collision",
     "console",
     "displacement",
     "kinematics",
