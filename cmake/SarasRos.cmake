@@ -11,6 +11,8 @@ endif()
 generate_messages(DEPENDENCIES std_msgs geometry_msgs sensor_msgs)
 catkin_package(CATKIN_DEPENDS message_runtime std_msgs geometry_msgs sensor_msgs)
 
+include(SarasCrtkMsgs)
+
 # Node sources stay not executable, or rosrun would find each of them twice.
 file(GLOB saras_nodes CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/saras_ros1/scripts/*")
 catkin_install_python(PROGRAMS ${saras_nodes} DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})

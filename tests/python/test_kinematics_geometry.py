@@ -11,7 +11,7 @@ import pytest
 import yaml
 
 import saras
-from saras.kinematics import mesa, scene, simball
+from saras.kinematics import dvrk, mesa, scene, simball
 
 ROOT = Path(__file__).resolve().parents[2]
 GEOMETRY = yaml.safe_load((ROOT / "config" / "mesa_geometry.yaml").read_text(encoding="utf-8"))
@@ -71,6 +71,35 @@ def test_both_arms_reach_the_phantom():
                 world_tip = top + np.array([x * room.phantom.size[0], sign * y * room.phantom.size[1], 0.0]) / 2
                 tip = (base_T_world @ np.append(world_tip, 1.0))[:3]
                 assert arm.unreachable(tip, place.rcm) == "", (name, world_tip)
+
+
+def test_da_vinci_reaches_the_phantom_and_the_assistants_tools_through_the_abdominal_wall():
+    room = scene.load(SCENE)
+    torso = yaml.safe_load(SCENE.read_text(encoding="utf-8"))["torso"]
+    top = room.phantom.center + room.phantom.size * [0.0, 0.0, 0.5]
+    trocars = [(room.world_T(f"{name}/sbs_world") @ np.append(place.rcm, 1.0))[:3] for name, place in room.arms.items()]
+    for name, side in (("PSM1", 1.0), ("PSM2", -1.0), ("ECM", 0.0)):
+        arm = dvrk.ecm() if name == "ECM" else dvrk.psm()
+        pose = room.world_T(name)
+        centre = pose[:3, 3]
+        # In the wall: below the torso's highest line, above the tissue, and away from the other trocars.
+        assert top[2] + 0.05 < centre[2] < torso["height_m"] and abs(centre[1]) < torso["half_width_m"]
+        assert centre[0] > 0.05 and np.sign(centre[1]) == side
+        assert min(np.linalg.norm(centre - trocar) for trocar in trocars) > 0.10
+        # At zero the shaft points at the phantom's middle.
+        towards = (top - centre) / np.linalg.norm(top - centre)
+        np.testing.assert_allclose(-pose[:3, 2], towards, atol=1e-5)
+        q = np.zeros(len(arm.limits))
+        for y in (0.0, 0.5, 1.0):  # where the assistant's tools are, with a straight wrist
+            for height in (0.0, 0.03):
+                tip = np.linalg.inv(pose) @ np.append(top + [0.0, side * y * 0.07, height], 1.0)
+                q[:3] = np.arctan2(tip[0], -tip[2]), np.arcsin(-tip[1] / np.linalg.norm(tip[:3])), 0.0
+                q[2] = np.linalg.norm(tip[:3]) - arm.forward(q)[:3, 3] @ arm.shaft(q)
+                np.testing.assert_allclose(arm.forward(q)[:3, 3], tip[:3], atol=1e-9)
+                assert arm.limit_violation(q) == "", (name, y, height)
+    # The endoscope's up is the table's.
+    ecm = room.world_T("ECM") @ dvrk.ecm().forward([0, 0, 0.1, 0])
+    assert ecm[2, 1] > 0.5 and abs(ecm[2, 0]) < 1e-6
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from saras.kinematics import mesa, scene, simball
+from saras.kinematics import dvrk, mesa, scene, simball
 
 ROOT = Path(__file__).resolve().parents[2]
 xacro = pytest.importorskip("xacro")
@@ -110,6 +110,22 @@ def test_positioning_arm_agrees_with_the_urdf(many):
         np.testing.assert_allclose(chain.forward(q, "flange"), urdf.forward("mesa_left/flange", named), atol=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("model", "name", "arguments", "arm"),
+    [
+        ("dvrk_psm", "PSM2", {}, dvrk.psm()),
+        ("dvrk_psm", "PSM1", {"offset": 0.4826, "length": 0.4670, "wrist": 0.0112}, dvrk.psm("420194", "si")),
+        ("dvrk_ecm", "ECM", {}, dvrk.ecm()),
+        ("dvrk_ecm", "ECM", {"view": -np.pi / 6}, dvrk.ecm("up")),
+    ],
+)
+def test_da_vinci_agrees_with_the_urdf(model, name, arguments, arm, many):
+    urdf = read(model, name=name, **arguments)
+    for q in draws(arm.limits, 200 * many, 4):
+        tip = urdf.forward(f"{name}_tool_tip", dict(zip(arm.joint_names, q)))
+        np.testing.assert_allclose(arm.forward(q), tip, atol=1e-9)
+
+
 def test_positioning_arms_carry_the_bases_where_the_scene_has_them(room):
     chain, urdf = mesa.passive_chain(), read("saras")
     for name in ("mesa_left", "mesa_right"):
@@ -125,7 +141,7 @@ def test_whole_tree_has_every_frame_of_the_scene_once_under_world(room):
     urdf = read("saras")
     assert len(urdf.links) == len(set(urdf.links))
     assert [link for link in urdf.links if link not in urdf.by_child] == ["world"]
-    for frame in ("touchball_left/simball_base", "touchball_right/touch_base", "mesa_left/passive_base"):
+    for frame in ("touchball_left/simball_base", "touchball_right/touch_base", "mesa_left/passive_base", "PSM1", "ECM"):
         np.testing.assert_allclose(urdf.forward(frame, {}), room.world_T(frame), atol=1e-12)
 
 
@@ -135,6 +151,8 @@ def test_whole_tree_has_every_frame_of_the_scene_once_under_world(room):
         ("mesa_arm", "mesa_right", "mesa_right/sbs_world"),
         ("passive_arm", "mesa_right", "mesa_right/passive_base"),
         ("console", "touchball_left", "touchball_left/simball_base"),
+        ("dvrk_psm", "PSM1", "PSM1"),
+        ("dvrk_ecm", "ECM", "ECM"),
         ("scene", "", "world"),
     ],
 )
