@@ -92,7 +92,7 @@ def test_da_vinci_reaches_the_phantom_and_the_assistants_tools_through_the_abdom
         q = np.zeros(len(arm.limits))
         for y in (0.0, 0.5, 1.0):  # where the assistant's tools are, with a straight wrist
             for height in (0.0, 0.03):
-                tip = np.linalg.inv(pose) @ np.append(top + [0.0, side * y * 0.07, height], 1.0)
+                tip = np.linalg.inv(pose) @ np.append(top + np.array([0.0, side * y * 0.07, height]), 1.0)
                 q[:3] = np.arctan2(tip[0], -tip[2]), np.arcsin(-tip[1] / np.linalg.norm(tip[:3])), 0.0
                 q[2] = np.linalg.norm(tip[:3]) - arm.forward(q)[:3, 3] @ arm.shaft(q)
                 np.testing.assert_allclose(arm.forward(q)[:3, 3], tip[:3], atol=1e-9)

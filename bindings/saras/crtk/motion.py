@@ -1,0 +1,69 @@
+"""Point-to-point motion of several joints, bounded in speed and acceleration."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+
+class PointToPoint:
+    """Joints that go to a goal, from any position and speed, and all arrive together when they begin at rest.
+
+    speed, acceleration: (n,) bounds [rad/s, m/s and their rates]. q (n,) where it begins.
+    """
+
+    def __init__(self, q: npt.ArrayLike, speed: npt.ArrayLike, acceleration: npt.ArrayLike) -> None:
+        self.q: Array = np.array(q, dtype=float)
+        self.v: Array = np.zeros_like(self.q)
+        self.goal: Array = self.q.copy()
+        self._speed_bound: Array = np.array(speed, dtype=float)
+        self._acceleration_bound: Array = np.array(acceleration, dtype=float)
+        self._speed, self._acceleration = self._speed_bound, self._acceleration_bound
+
+    @property
+    def arrived(self) -> bool:
+        """Whether it stands at the goal."""
+        return bool((self.q == self.goal).all()) and not self.v.any()
+
+    def go(self, goal: npt.ArrayLike) -> None:
+        """A new goal (n,). From rest all joints share one profile, that of the slowest: a straight line in joint space."""
+        self.goal = np.array(goal, dtype=float)
+        self._speed, self._acceleration = self._speed_bound, self._acceleration_bound
+        distance = np.abs(self.goal - self.q)
+        moving = distance > 0.0
+        if moving.any() and not self.v.any():  # already moving: each as its own bounds let it
+            self._speed = distance * float((self._speed_bound[moving] / distance[moving]).min())
+            self._acceleration = distance * float((self._acceleration_bound[moving] / distance[moving]).min())
+
+    def follow(self, goal: npt.ArrayLike) -> None:
+        """The same for a goal that moves on with each step: full bounds for all joints."""
+        self.goal = np.array(goal, dtype=float)
+        self._speed, self._acceleration = self._speed_bound, self._acceleration_bound
+
+    def put(self, q: npt.ArrayLike) -> None:
+        """Stands at q (n,) at once."""
+        self.q = np.array(q, dtype=float)
+        self.goal, self.v = self.q.copy(), np.zeros_like(self.q)
+
+    def step(self, dt: float) -> None:
+        """Moves on by dt [s]: to the goal as fast as the bounds let it come to rest there."""
+        if dt <= 0.0 or self.arrived:
+            return
+        way = self.goal - self.q
+        a_dt = self._acceleration * dt
+        # Largest speed v with v·dt + v²/(2a) ≤ |way|: it can still brake from there.
+        most = np.minimum(np.sqrt(a_dt**2 + 2.0 * self._acceleration * np.abs(way)) - a_dt, self._speed)
+        wanted = np.copysign(np.minimum(most, np.abs(way) / dt), way)
+        v = self.v + np.clip(wanted - self.v, -a_dt, a_dt)
+        near = (np.abs(way) <= a_dt * dt) & (np.abs(self.v) <= a_dt)
+        self.q = np.where(near, self.goal, self.q + v * dt)
+        self.v = np.where(near, 0.0, v)
+
+    def stop(self) -> None:
+        """Stands where it is."""
+        self.put(self.q)
+
+
+__all__ = ["PointToPoint"]
