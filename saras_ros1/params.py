@@ -43,6 +43,10 @@ class Params:
         """Whether the key stands in the file."""
         return name in self._values
 
+    def skip(self, name: str) -> None:
+        """A key that is known but not wanted now."""
+        self._take(name)
+
     def number(self, name: str, low: float = -math.inf, high: float = math.inf) -> float:
         """A finite number in [low, high]."""
         return _number(self._take(name), f"{self._where}/{name}", low, high)

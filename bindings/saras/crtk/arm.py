@@ -92,7 +92,7 @@ class SimulatedCrtkArm:
         try:
             self.machine.command(text)
         except ValueError as error:
-            return self._refuse(str(error))
+            return self.refuse(str(error))
         if not self.machine.ready:
             self.stop()
         self._changed()
@@ -110,14 +110,14 @@ class SimulatedCrtkArm:
                 raise ValueError(f"arm is {self.machine.state}{homed}")
             obey(value)
         except (ValueError, Error) as error:
-            return self._refuse(f"{name} refused: {error}")
+            return self.refuse(f"{name} refused: {error}")
         self.commanded_s = self.time_s
         return True
 
     def jaw_command(self, name: str, value: npt.ArrayLike) -> bool:
         """servo_jp, move_jp or servo_jf of the jaw, value (1,)."""
         if self.jaw is None or self.jaw_limits is None:
-            return self._refuse(f"jaw/{name} refused: {self.name} has no jaw")
+            return self.refuse(f"jaw/{name} refused: {self.name} has no jaw")
         try:
             if not self.machine.ready:
                 raise ValueError(f"arm is {self.machine.state}")
@@ -133,7 +133,7 @@ class SimulatedCrtkArm:
             elif name != "servo_jf":
                 raise ValueError("no such command")
         except ValueError as error:
-            return self._refuse(f"jaw/{name} refused: {error}")
+            return self.refuse(f"jaw/{name} refused: {error}")
         return True
 
     def follow(self, q: npt.ArrayLike) -> None:
@@ -273,7 +273,8 @@ class SimulatedCrtkArm:
     def _changed(self) -> None:
         self._states.append(self._state())
 
-    def _refuse(self, text: str) -> bool:
+    def refuse(self, text: str) -> bool:
+        """Reports a command that is not obeyed; False."""
         self._events.append(("error", f"{self.name}: {text}"))
         return False
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 
@@ -28,7 +30,7 @@ class PointToPoint:
         return bool((self.q == self.goal).all()) and not self.v.any()
 
     def go(self, goal: npt.ArrayLike) -> None:
-        """A new goal (n,). From rest all joints share one profile, that of the slowest: a straight line in joint space."""
+        """A new goal (n,). From rest all joints share the profile of the slowest: a straight line in joint space."""
         self.goal = np.array(goal, dtype=float)
         self._speed, self._acceleration = self._speed_bound, self._acceleration_bound
         distance = np.abs(self.goal - self.q)
@@ -51,15 +53,20 @@ class PointToPoint:
         """Moves on by dt [s]: to the goal as fast as the bounds let it come to rest there."""
         if dt <= 0.0 or self.arrived:
             return
-        way = self.goal - self.q
-        a_dt = self._acceleration * dt
-        # Largest speed v with v·dt + v²/(2a) ≤ |way|: it can still brake from there.
-        most = np.minimum(np.sqrt(a_dt**2 + 2.0 * self._acceleration * np.abs(way)) - a_dt, self._speed)
-        wanted = np.copysign(np.minimum(most, np.abs(way) / dt), way)
-        v = self.v + np.clip(wanted - self.v, -a_dt, a_dt)
-        near = (np.abs(way) <= a_dt * dt) & (np.abs(self.v) <= a_dt)
-        self.q = np.where(near, self.goal, self.q + v * dt)
-        self.v = np.where(near, 0.0, v)
+        # Plain numbers: for six joints numpy's calls cost three times as much.
+        q, v = self.q.tolist(), self.v.tolist()
+        bounds = zip(self.goal.tolist(), self._speed.tolist(), self._acceleration.tolist())
+        for i, (goal, speed, acceleration) in enumerate(bounds):
+            way, a_dt = goal - q[i], acceleration * dt
+            length = abs(way)
+            if length <= a_dt * dt and abs(v[i]) <= a_dt:
+                q[i], v[i] = goal, 0.0
+                continue
+            # The largest speed s with s·dt + s²/(2a) ≤ |way|: it can still brake from there.
+            most = min(math.sqrt(a_dt * a_dt + 2.0 * acceleration * length) - a_dt, speed, length / dt)
+            v[i] += min(max(math.copysign(most, way) - v[i], -a_dt), a_dt)
+            q[i] += v[i] * dt
+        self.q, self.v = np.array(q), np.array(v)
 
     def stop(self) -> None:
         """Stands where it is."""
