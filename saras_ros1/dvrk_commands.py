@@ -14,7 +14,16 @@ from crtk_msgs.srv import (
     QueryInverseKinematics,
     QueryInverseKinematicsResponse,
 )
-from geometry_msgs.msg import Pose, PoseStamped, TransformStamped, TwistStamped, Wrench, WrenchStamped
+from geometry_msgs.msg import (
+    Point,
+    Pose,
+    PoseStamped,
+    Quaternion,
+    TransformStamped,
+    TwistStamped,
+    Wrench,
+    WrenchStamped,
+)
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Empty, Header, String
 
@@ -187,7 +196,8 @@ class Commands:
         except (ValueError, Error) as error:
             response.message, response.cp.orientation.w = str(error), 1.0
             return response
-        response.cp, response.result = convert.pose_msg(pose, "", rospy.Time()).pose, True
+        response.cp = Pose(Point(*pose[:3, 3].tolist()), Quaternion(*convert.quaternion(pose)))
+        response.result = True
         return response
 
     def _inverse(self, request: Any) -> QueryInverseKinematicsResponse:

@@ -10,7 +10,9 @@ Pose topics have had three types; messages are kept raw and decoded when they ar
 from __future__ import annotations
 
 import struct
+import threading
 import time
+from io import BytesIO
 from typing import Any
 
 import numpy as np
@@ -58,8 +60,8 @@ class DvrkArmInput:
 
     # ---- messages
 
-    def _on_pose(self, message: rospy.AnyMsg, pattern: str) -> None:
-        kind, raw = message._connection_header.get("type", ""), message._buff
+    def _on_pose(self, message: Any, pattern: str) -> None:
+        kind, raw = _raw(message)
         if kind not in READERS or len(raw) < STAMP.size:
             self._reject(f"{pattern.format(self.name)} has type {kind}: must be one of {', '.join(READERS)}")
             return
@@ -73,7 +75,8 @@ class DvrkArmInput:
         self._received_s = time.monotonic()
         self.received += 1
         if pattern == POSE_TOPICS[0] and POSE_TOPICS[1] in self._subscribers:
-            self._subscribers.pop(POSE_TOPICS[1]).unregister()  # one naming is enough
+            # One naming is enough. It takes calls of the master, which must not hold up reception.
+            threading.Thread(target=self._subscribers.pop(POSE_TOPICS[1]).unregister, daemon=True).start()
 
     def _on_state(self, message: OperatingState) -> None:
         self.state = message.state
@@ -140,3 +143,12 @@ class DvrkArmInput:
         """For /diagnostics."""
         age = f"{1e3 * self.age_s:.0f}" if self.received else "never"
         return {self.name: f"age_ms={age} received={self.received} rejected={self.rejected} {self.unknown_reason}"}
+
+
+def _raw(message: Any) -> tuple[str, bytes]:
+    """Type and bytes. rospy gives another subscriber's class where this process reads the topic a second time."""
+    if isinstance(message, rospy.AnyMsg):
+        return message._connection_header.get("type", ""), message._buff
+    buffer = BytesIO()
+    message.serialize(buffer)
+    return message._type, buffer.getvalue()
