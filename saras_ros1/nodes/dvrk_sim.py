@@ -48,7 +48,7 @@ class Arm:
             kinematics = dvrk.ecm(params.text("endoscope"), body)
         count = len(kinematics.limits)
         self.kind, self.reference = kind, params.text("reference", REFERENCES)
-        self.world_T_base = node.world_T(name)
+        self.world_T_base = node.scene.world_T(name)
         self.base_T_world = np.linalg.inv(self.world_T_base)
         self.home = params.vector("home_m", 3, -10.0, 10.0)
         limits = MotionLimits(
@@ -88,8 +88,7 @@ class DvrkSim(Node):
         self.display_every = max(1, round(rate_hz / self.params.number("display_hz", 1.0, 60.0)))
         self.old_names = self.params.flag("old_names")
         self.enabled = self.params.text("state", ("ENABLED", "DISABLED")) == "ENABLED"
-        scene_file = self.params.text("scene_file", empty=True)
-        self.scene = scenes.load(scene_file) if scene_file else None
+        self.scene = load_scene(self.params.text("scene_file"))
         names = self.params.texts("arms")
         self.arms = {name: Arm(self, name, self.params.section(name)) for name in names}
         for name in ("PSM1", "PSM2", "PSM3", "ECM"):  # the file may describe more arms than are wanted
@@ -108,7 +107,7 @@ class DvrkSim(Node):
         self.console = Console(self, self.params.number("teleop_scale", 1e-3, 1.0), self.old_names)
         self.params.finish()
         self.tools: dict[str, Latest] = {}
-        if mode == "meet" and self.scene is not None:
+        if mode == "meet":
             self.tools = {side: Latest(f"/mesa_{side}/ee_pose", PoseStamped) for side in SIDES}
         self._targets: dict[str, np.ndarray | None] = {}
         self._ticks, self._ticks_at_report, self._busy_s, self._worst_s = 0, 0, 0.0, 0.0
@@ -117,10 +116,6 @@ class DvrkSim(Node):
             self._update_references()
         self.console.press("console/operator_present", 1 if self.enabled else 0)
         self.every(1.0 / rate_hz, self.tick)
-
-    def world_T(self, name: str) -> np.ndarray:
-        """(4, 4) of a frame of the scene; identity without one."""
-        return np.eye(4) if self.scene is None else self.scene.world_T(name)
 
     def _load_bag(self, path: str) -> None:
         if not path:
@@ -171,13 +166,13 @@ class DvrkSim(Node):
     def _look(self) -> None:
         """Where the assistant's tips are now, in world: the first PSM goes to the left one, the second to the right."""
         for name, side in (("PSM1", "left"), ("PSM2", "right")):
-            message = self.tools[side].value() if side in self.tools else None
+            message = self.tools[side].value()
             point = None
-            if message is not None and self.scene is not None:
+            if message is not None:
                 world_T_sbs = self.scene.world_T(f"mesa_{side}/sbs_world")
                 point = (world_T_sbs @ convert.pose(message))[:3, 3]
             self._targets[name] = point
-        if self.scene is not None and "bones" not in self._targets:
+        if "bones" not in self._targets:
             box = self.scene.bones
             top = np.append(box.center + box.size * [-0.1, 0.0, 0.5], 1.0)
             self._targets["bones"] = (self.scene.world_T("bones_marker_frame") @ top)[:3]
@@ -201,6 +196,14 @@ class DvrkSim(Node):
             "step_worst_ms": round(1e3 * self._worst_s, 3),
             **states,
         }
+
+
+def load_scene(path: str) -> scenes.Scene:
+    """The operating room; ConfigError names the file."""
+    try:
+        return scenes.load(path)
+    except (OSError, ConfigError) as error:
+        raise ConfigError(f"scene_file {path}: {error}") from None
 
 
 def main() -> int:

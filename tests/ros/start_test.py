@@ -90,6 +90,23 @@ class StartTest(unittest.TestCase):
             "touchball_receiver", "console.yaml", "touchball_receiver", ("bind_host",), "0.0.0.0", "0.0.0.0", "loopback"
         )
 
+    def spoil_da_vinci(self, path, value, *words):
+        values = {**load("dvrk.yaml", "dvrk_sim"), "scene_file": str(CONFIG / "scene.yaml")}
+        values[path[0]] = {**values[path[0]], path[1]: value}
+        self.refuse("dvrk_sim", "dvrk_sim", values, *words)
+
+    def test_da_vinci_with_a_wrong_pairing(self):
+        self.spoil_da_vinci(("PSM2", "body"), "si", "400006", "Si body")
+
+    def test_da_vinci_with_an_unknown_tool(self):
+        self.spoil_da_vinci(("PSM1", "tool"), "4711", "4711", "LARGE_NEEDLE_DRIVER:400006")
+
+    def test_da_vinci_that_starts_out_of_reach(self):
+        self.spoil_da_vinci(("ECM", "home_m"), [0.5, 0.0, 0.1], "/dvrk_sim/ECM/home_m", "must be in [")
+
+    def test_da_vinci_with_a_bag_that_is_not_there(self):
+        self.spoil_da_vinci(("surgeon", "bag"), "/nowhere.bag", "/nowhere.bag")
+
     def test_frames_without_a_file(self):
         self.refuse("frames", "frames", {"scene_file": "/nowhere/scene.yaml"}, "/nowhere/scene.yaml")
 
