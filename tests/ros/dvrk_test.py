@@ -268,6 +268,15 @@ class Dvrk(unittest.TestCase):
         measured = Newest("/PSM2/measured_cp", PoseStamped)
         local = Newest("/PSM2/local/measured_cp", PoseStamped)
         wait_until(lambda: publisher.get_num_connections() and measured.message and local.message, "PSM2")
+        # Configured relative to the endoscope, as the dVRK does: the tf tree gives the same.
+        self.assertEqual(measured.message.header.frame_id, "ECM_tool_tip")
+        room = scene.load(ROOT / "config" / "scene.yaml")
+        ecm = Newest("/ECM/local/measured_cp", PoseStamped)
+        wait_until(lambda: ecm.message, "ECM")
+        world_T_view = room.world_T("ECM") @ convert.pose(ecm.message)
+        np.testing.assert_allclose(
+            world_T_view @ convert.pose(measured.next()), room.world_T("PSM2") @ convert.pose(local.message), atol=1e-6
+        )
         base = np.array([[1, 0, 0, 0.2], [0, -0.866, 0.5, 0], [0, -0.5, -0.866, 0], [0, 0, 0, 1.0]])
         base[1:3, 1:3] /= np.sqrt(0.866**2 + 0.25)
         publisher.publish(convert.pose_msg(base, "ECM", rospy.Time.now()))
