@@ -36,8 +36,8 @@ STAMP = struct.Struct("<III")  # Header: seq, secs, nsecs
 class DvrkArmInput:
     """The newest good pose of one arm, and whether it may be believed.
 
-    node: its name and lock serve for messages. timeout_s: an older pose, or one whose stamp does not move on, is
-    unknown. frame_override: used instead of the header's frame_id. The arm must say that it is ENABLED.
+    node: the Node in whose process it reads; None in tests. timeout_s: an older pose, or one whose stamp does not move
+    on, is unknown. frame_override: used instead of the header's frame_id. The arm must say that it is ENABLED.
     """
 
     def __init__(self, node: Any, name: str, *, timeout_s: float, frame_override: str = "") -> None:

@@ -200,9 +200,13 @@ def test_a_stream_beyond_a_limit_is_clipped_and_says_so_once():
 
 def test_jaw():
     arm = psm()
+    arm.take_states()
     assert arm.jaw_command("move_jp", [1.0])
+    assert arm.command("servo_jp", START)  # the arm's own command does not end the jaw's
+    assert arm.machine.is_busy
     run(arm, 1.0)
     assert arm.jaw.q[0] == 1.0
+    assert arm.take_states() == [("ENABLED", True, True), ("ENABLED", True, False)]
     assert arm.jaw_command("servo_jp", [9.0])
     assert arm.jaw.q[0] == 1.396
     assert not arm.jaw_command("move_jp", [9.0]) and not arm.jaw_command("move_jp", [0.1, 0.2])

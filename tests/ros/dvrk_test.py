@@ -27,7 +27,7 @@ from saras_ros1 import convert
 from saras_ros1.dvrk_inputs import DvrkArmInput
 
 sys.path.insert(0, str(ROOT / "tests"))
-from fakes.crtk_client import Arm
+from fakes.crtk_client import Arm, Ral, Utils
 
 PATIENT_S = 2.0  # a busy machine is no fault: the client's interval here
 START = np.array([0.1, 0.05, 0.1, 0.3, 0.2, -0.1])
@@ -192,6 +192,17 @@ class Dvrk(unittest.TestCase):
         q = np.array([0.1, -0.1, 0.12, 0.2])
         self.assertTrue(ecm.move_jp(q).wait())
         np.testing.assert_allclose(matrix(ecm.measured_cp(age=0.0, wait=PATIENT_S)), dvrk.ecm().forward(q), atol=1e-9)
+
+    def test_a9_the_jaw_waits_on_the_arms_state(self) -> None:
+        jaw = type("Jaw", (), {"wait_for_busy": staticmethod(self.arm.wait_for_busy)})()
+        ral = Ral("PSM1/jaw")
+        utils = Utils(jaw, ral, PATIENT_S)
+        utils.add_measured_js()
+        utils.add_move_jp()
+        ral.check_connections(30.0)
+        for angle in (0.8, 0.8, 0.0):
+            self.assertTrue(jaw.move_jp(np.array([angle])).wait())
+            np.testing.assert_allclose(jaw.measured_jp(age=0.0, wait=PATIENT_S), [angle], atol=1e-9)
 
     # ---- names before CRTK, console, frames
 

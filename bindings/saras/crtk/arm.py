@@ -68,6 +68,7 @@ class SimulatedCrtkArm:
         self._events: list[tuple[str, str]] = []
         self._states = [self._state()]
         self._clipped = ""
+        self._moves = self._jaw_moves = False
 
     # ---- what it reports
 
@@ -126,10 +127,12 @@ class SimulatedCrtkArm:
             if name == "servo_jp":
                 self._tell_clipped("" if lower <= angle[0] <= upper else f"jaw [rad] = {angle[0]:g}")
                 self.jaw.put(np.clip(angle, lower, upper))
+                self._busy(jaw=False)
             elif name == "move_jp":
                 if not lower <= angle[0] <= upper:
                     raise ValueError(f"jaw [rad] = {angle[0]:g}: must be in [{lower:g}, {upper:g}]")
                 self.jaw.go(angle)
+                self._busy(jaw=True)
             elif name != "servo_jf":
                 raise ValueError("no such command")
         except ValueError as error:
@@ -147,7 +150,7 @@ class SimulatedCrtkArm:
         self.joints.stop()
         if self.jaw is not None:
             self.jaw.stop()
-        self._busy(False)
+        self._busy(arm=False, jaw=False)
 
     def step(self, dt: float) -> None:
         """Moves on by dt [s]."""
@@ -156,6 +159,8 @@ class SimulatedCrtkArm:
             return
         if self.jaw is not None:
             self.jaw.step(dt)
+            if self._jaw_moves and self.jaw.arrived:
+                self._busy(jaw=False)
         if self._rates is not None:
             if self.time_s > self._rates_until_s:
                 self.stop()
@@ -169,8 +174,8 @@ class SimulatedCrtkArm:
             self.joints.q = goal.copy() if share >= 1.0 else self.joints.q + share * (goal - self.joints.q)
             return
         self.joints.step(dt)
-        if self.machine.is_busy and self.joints.arrived:
-            self._busy(False)
+        if self._moves and self.joints.arrived:
+            self._busy(arm=False)
 
     # ---- commands by name
 
@@ -232,7 +237,7 @@ class SimulatedCrtkArm:
             raise ValueError(violation)
         self._rates, self._interpolating = None, 0.0
         self.joints.go(np.clip(q, self._lower, self._upper))
-        self._busy(True)
+        self._busy(arm=True)
 
     def _servo_jv(self, value: Any) -> None:
         rates = _vector(value, len(self.joints.q))
@@ -258,14 +263,18 @@ class SimulatedCrtkArm:
     def _end_others(self) -> None:
         self._rates, self._interpolating = None, 0.0
         self.joints.stop()
-        self._busy(False)
+        self._busy(arm=False)
 
     # ---- states and events
 
     def _state(self) -> tuple[str, bool, bool]:
         return self.machine.state, self.machine.is_homed, self.machine.is_busy
 
-    def _busy(self, busy: bool) -> None:
+    def _busy(self, *, arm: bool | None = None, jaw: bool | None = None) -> None:
+        """What moves by a move command now; the arm is busy while its joints or its jaw do."""
+        self._moves = self._moves if arm is None else arm
+        self._jaw_moves = self._jaw_moves if jaw is None else jaw
+        busy = self._moves or self._jaw_moves
         if self.machine.is_busy != busy:
             self.machine.is_busy = busy
             self._changed()
