@@ -202,7 +202,7 @@ SignedDistance distance(const Capsule& a, const Capsule& b) noexcept {
   const Vector3 between = r + at.t * v - at.s * u;
   const double gap = between.norm();
   Vector3 normal;
-  if (gap > tolerance) {
+  if (gap > kNoDirection * scale) {
     normal = between / gap;
   } else if (!at.parallel) {
     normal = common_perpendicular(cross, u);
@@ -221,7 +221,7 @@ SignedDistance distance(const Capsule& a, const Parallelepiped& b) noexcept {
   if (b.rectangular() || !enters(a.a, a.b, b)) {
     const Gap gap = b.rectangular() ? gap_to_rectangular(a.a, a.b, b) : gap_to_skewed(a.a, a.b, b);
     const double length = gap.to_box.norm();
-    if (length > tolerance) {
+    if (length > kNoDirection * scale) {
       return finish(gap.axis_point, gap.to_box / length, length, a.radius_m, 0.0, tolerance);
     }
   }

@@ -10,6 +10,8 @@ namespace saras::collision {
 
 /// Error that rounding may leave, relative to the coordinates and sizes of the input.
 inline constexpr double kRelative = 1e-12;
+/// A gap below this, relative to the same, has no direction: rounding would turn its normal by 1e-5 and more.
+inline constexpr double kNoDirection = 1e-11;
 /// sin^2 of the angle between two axes below which they count as parallel: lateral error 1e-12 of their length.
 inline constexpr double kParallel = 1e-24;
 
