@@ -18,6 +18,7 @@ import saras
 #: name: (module, one line for --help)
 COMMANDS: dict[str, tuple[str, str]] = {
     "console": ("saras.console.command", "read the two handles, guard their ports, talk to the platform over UDP"),
+    "regions": ("saras.collision.command", "make forbidden regions from a bone's mesh, or check a file of them"),
     "replay": ("saras.replay", "run the laws again on recorded inputs and compare"),
     "report": ("saras.report.command", "write the HTML report of a recorded session"),
 }
@@ -26,6 +27,9 @@ COMMANDS: dict[str, tuple[str, str]] = {
 OPTIONAL_LIBRARIES = {
     "matplotlib": "saras[plot]",
     "rosbags": "saras[recording]",
+    "trimesh": "saras[regions]",
+    "scipy": "saras[regions]",
+    "yaml": "saras[regions]",
     "rich": "saras[console]",
     "pygame": "saras[console]",
     "pyOpenHaptics": "saras[haptics]",
