@@ -22,8 +22,11 @@ import struct_codec
 
 from saras import net
 
-GROUPS = {"teleop": ("numpy", peers.teleop), "codec": ("struct", peers.codec)}
+PYTHON_PEERS = {"teleop": ("numpy", peers.teleop), "codec": ("struct", peers.codec)}
+GROUPS = [*PYTHON_PEERS, "collision"]
 TOLERANCE = 1e-9
+COLLISION_PAIRS = 100_000
+COAL_TOLERANCE = 1e-6
 
 
 class NotTheSame(RuntimeError):
@@ -55,12 +58,55 @@ def check_codec():
     return 0.0
 
 
+def run_collision(program):
+    """Rows of the group collision: C++ peers, timed in a program of their own."""
+    program = program.with_name("saras_collision_benchmark")
+    if not program.exists():
+        print("collision: left out, needs FCL 0.7: apt-get install libfcl-dev", file=sys.stderr)
+        return []
+    text = subprocess.run([str(program), str(COLLISION_PAIRS)], check=True, capture_output=True, text=True).stdout
+    answer = json.loads(text)
+    check = answer["check"]
+    # Coal's iteration for boxes stops at 1e-6. FCL with libccd is off by centimetres on some pairs: timed as it comes.
+    worst = max(check["coal_capsules_m"], check["coal_boxes_m"], check["coal_scenes_m"])
+    if check["collisions_disagreed"] or not worst <= COAL_TOLERANCE:
+        raise NotTheSame(f"collision: {check}")
+    fcl = max(check["fcl_capsules_m"], check["fcl_boxes_m"])
+    print(
+        f"collision: coal computes the same (worst difference {worst:.0e} m, {check['pairs']} pairs, no collision "
+        f"disagreed; fcl differs by up to {fcl:.0e} m)",
+        file=sys.stderr,
+    )
+    rows = []
+    for row in answer["rows"]:
+        ratio = {peer: round(times["p50"] / row["p50"], 2) for peer, times in row["peers"].items()}
+        ours = {"p50": row["p50"], "p99": row["p99"]}
+        rows.append(
+            {
+                "group": "collision",
+                "name": row["name"],
+                "unit": "ns",
+                "ours": ours,
+                "peers": row["peers"],
+                "ratio": ratio,
+            }
+        )
+    return rows
+
+
 def run(groups, program):
     """Rows of the given groups in the format of the JSON file."""
+    python_groups = [group for group in groups if group in PYTHON_PEERS]
+    rows = run_python_peers(python_groups, program) if python_groups else []
+    return rows + (run_collision(program) if "collision" in groups else [])
+
+
+def run_python_peers(groups, program):
+    """Rows whose peers are Python."""
     answer = json.loads(subprocess.run([str(program), *groups], check=True, capture_output=True, text=True).stdout)
     rows = []
     for group in groups:
-        peer, measure = GROUPS[group]
+        peer, measure = PYTHON_PEERS[group]
         difference = check_teleop(answer["check"]) if group == "teleop" else check_codec()
         print(f"{group}: {peer} computes the same (worst difference {difference:.0e})", file=sys.stderr)
         times = measure()
