@@ -65,6 +65,10 @@ class Capsule:
         All points within radius_m of the segment a - b.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def a(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
         """
@@ -143,6 +147,10 @@ class SignedDistance:
         point_b = point_a + distance * normal.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def distance(self) -> float:
         """
@@ -309,6 +317,10 @@ class ProximityMonitorConfig:
         Thresholds and speeds of ProximityMonitor.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def collision_m(self) -> float:
         """
@@ -425,6 +437,10 @@ class ToolProximity:
         Of one tool: state, distance, with whom, what is unknown, how fast it may move.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def approach_direction(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
         """
@@ -516,6 +532,10 @@ class ProximityMonitorOutput:
         Result of ProximityMonitor.step.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def status(self) -> saras._core.Status:
         """
@@ -544,6 +564,10 @@ class ProximityMonitorState:
         What hysteresis remembers.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def levels(self) -> typing.Annotated[list[ProximityState], "FixedSize(16)"]:
         """
@@ -596,6 +620,10 @@ class RepulsiveForceConfig:
         A spring before what is near.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def dt_max_s(self) -> float:
         """
@@ -638,6 +666,10 @@ class RepulsiveForceOutput:
         Result of RepulsiveForce.step.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def status(self) -> saras._core.Status:
         """
@@ -666,6 +698,10 @@ class RepulsiveForceState:
         Nothing is remembered.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
 
 class RepulsiveForce:
     """

@@ -35,6 +35,10 @@ class PortGuardConfig:
         An energy tank of one channel at a handle.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def force_ramp_s(self) -> float:
         """
@@ -70,6 +74,10 @@ class PortGuardOutput:
         Result of PortGuard.step.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def applied(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -105,6 +113,10 @@ class PortGuardState:
         All that a PortGuard remembers.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def billed_J(self) -> float:
         """
@@ -198,6 +210,10 @@ class SimulatedHandleConfig:
         A hand, the Simball it holds, the motors that push it.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def hand(self) -> saras._core.sim.OperatorConfig:
         """
@@ -261,6 +277,10 @@ class SimulatedHandleState:
         All that a SimulatedHandle remembers.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def hand(self) -> saras._core.sim.OperatorState:
         """

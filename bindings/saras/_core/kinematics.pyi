@@ -80,6 +80,10 @@ class Joint:
         One joint of a Chain and the link behind it, as in URDF.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def axis(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
         """
@@ -182,6 +186,10 @@ class RcmArmConfig:
         Dimensions and limits of a SARAS arm; defaults: mesa_geometry.hpp.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def instrument_m(self) -> float:
         """
@@ -359,6 +367,10 @@ class SimballHandleConfig:
         Dimensions and limits of a hand piece.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def handle_distance_m(self) -> float:
         """
@@ -446,6 +458,10 @@ class PsmConfig:
         Dimensions and limits of a PSM; defaults: Classic body, 400006.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def insertion_offset_m(self) -> float:
         """
@@ -546,6 +562,10 @@ class EcmConfig:
         Dimensions and limits of an ECM; defaults: Classic body, straight endoscope.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def endoscope_length_m(self) -> float:
         """

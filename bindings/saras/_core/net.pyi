@@ -78,6 +78,10 @@ class SimballJoints:
         Joints of the Simball handle.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def insertion_m(self) -> float:
         """
@@ -120,6 +124,10 @@ class PortLedger:
         Energy sent to the peer's tank, cumulative over a session.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def has_room(self) -> bool:
         """
@@ -183,6 +191,10 @@ class GuardState:
         The port guard's tank, for display and recording only.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def available_J(self) -> float:
         """
@@ -300,6 +312,10 @@ class TouchballUpSide:
         One handle, console to platform.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def calibrated(self) -> bool:
         """
@@ -399,6 +415,10 @@ class TouchballUp:
         Datagram from a console to the platform.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     def encode(self) -> bytes:
         """
         Bytes; raises ProtocolError.
@@ -452,6 +472,10 @@ class TouchballDownSide:
         One handle, platform to console.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def engagement(self) -> int:
         """
@@ -510,6 +534,10 @@ class TouchballDown:
         Datagram from the platform to a console.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     def encode(self) -> bytes:
         """
         Bytes; raises ProtocolError.
@@ -591,6 +619,10 @@ class SequenceCounts:
         What a SequenceFilter saw [datagrams].
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def accepted(self) -> int:
         """

@@ -71,6 +71,10 @@ class OperatorConfig:
         A hand and the handle it holds. Presets: firm(), normal(), weak(), active().
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def damping_N_s_m(self) -> float:
         """
@@ -162,6 +166,10 @@ class OperatorOutput:
         Result of Operator.step.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def position(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
         """
@@ -211,6 +219,10 @@ class OperatorState:
         All that an Operator remembers.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def position(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
         """
@@ -293,6 +305,10 @@ class TissueConfig:
         Soft tissue with a stiff Gaussian inclusion under a plane or spherical surface.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def base_T_surface(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -415,6 +431,10 @@ class TissueOutput:
         Result of Tissue.step.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def contact(self) -> bool:
         """
@@ -523,6 +543,10 @@ class ChannelConfig:
         Impairments of a datagram link, one way.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def burst_rate_hz(self) -> float:
         """
@@ -607,6 +631,10 @@ class ChannelCounters:
         What a Channel did so far.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def delivered(self) -> int:
         """
@@ -746,6 +774,10 @@ class ServoArmConfig:
         Joint dynamics and measurement of the simulated SARAS arm.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     def initial_q(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[6, 1]"]:
         """
         (6,) joints with the tip 0.1 m straight below the nominal trocar
@@ -833,6 +865,10 @@ class ServoArmOutput:
         Result of ServoArm.step.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def base_T_tip(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -922,6 +958,10 @@ class ServoArmState:
         All that a ServoArm remembers.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def jaw(self) -> float:
         """

@@ -54,6 +54,10 @@ class TwistEstimatorConfig:
         Limits and filter of a TwistEstimator.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def cutoff_hz(self) -> float:
         """
@@ -82,6 +86,10 @@ class TwistEstimatorOutput:
         Result of TwistEstimator.step.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def status(self) -> saras._core.Status:
         """
@@ -117,6 +125,10 @@ class TwistEstimatorState:
         All that a TwistEstimator remembers.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def base_T_previous(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -202,6 +214,10 @@ class FrameMappingConfig:
         Frames, filter and limits of a FrameMapping.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def base_T_console(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -262,6 +278,10 @@ class FrameMappingOutput:
         Result of FrameMapping.step. Twists are means over interval_s, in base axes.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def gap(self) -> bool:
         """
@@ -355,6 +375,10 @@ class FrameMappingState:
         All that a FrameMapping remembers.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def base_T_console(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -513,6 +537,10 @@ class TransparencyConfig:
         Gains and limits of a Transparency.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def damping_N_s_m(self) -> float:
         """
@@ -660,6 +688,10 @@ class TransparencyOutput:
         Result of Transparency.step, in the slave's base frame.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def desired_twist(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -709,6 +741,10 @@ class TransparencyState:
         All that a Transparency remembers.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def has_reference(self) -> bool:
         """
@@ -812,6 +848,10 @@ class EnergyTankConfig:
         Levels, damping and limits of an EnergyTank; 0 < minimum < request < available < maximum.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def applied_limit(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[6, 1]"]:
         """
@@ -921,6 +961,10 @@ class EnergyTankOutput:
         Result of EnergyTank.step.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def applied(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -1017,6 +1061,10 @@ class EnergyTankState:
         All that an EnergyTank remembers; cumulative joules since construction or restart.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def applied(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -1183,6 +1231,10 @@ class LedgerReceiverState:
         All that a LedgerReceiver remembers.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def credited_J(self) -> float:
         """
@@ -1270,6 +1322,10 @@ class VelocityIntegratorConfig:
         Bounds of a VelocityIntegrator.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def cone_axis(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
         """
@@ -1379,6 +1435,10 @@ class VelocityIntegratorOutput:
         Result of VelocityIntegrator.step.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def approach_limited(self) -> bool:
         """
@@ -1463,6 +1523,10 @@ class VelocityIntegratorState:
         All that a VelocityIntegrator remembers.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def measured_position(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
         """
@@ -1538,6 +1602,10 @@ class DisturbanceObserverConfig:
         Servo model and filter of a DisturbanceObserver.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def cutoff_hz(self) -> float:
         """
@@ -1601,6 +1669,10 @@ class DisturbanceObserverOutput:
         Result of DisturbanceObserver.step.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def has_wrench(self) -> bool:
         """
@@ -1645,6 +1717,10 @@ class DisturbanceObserverState:
         All that a DisturbanceObserver remembers.
         """
     def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
     @property
     def elapsed_s(self) -> float:
         """
