@@ -56,18 +56,19 @@ void bind_transparency(py::module_& m) {
           "step",
           [](Transparency& self, const Pose& master_pose, const Twist& master_twist, const Pose& slave_pose,
              const Twist& slave_twist, const Wrench& tissue_wrench, const Vector3& rcm, double dt, bool clutch,
-             bool stale, const std::optional<Twist>& master_twist_filtered) {
+             bool stale, const std::optional<Twist>& master_twist_filtered, const Wrench& guidance_wrench) {
             return self.step({master_pose, master_twist, slave_pose, slave_twist, tissue_wrench, rcm, clutch, stale,
-                              master_twist_filtered},
+                              master_twist_filtered, guidance_wrench},
                              dt);
           },
           py::arg("master_pose"), py::arg("master_twist"), py::arg("slave_pose"), py::arg("slave_twist"),
           py::arg("tissue_wrench"), py::arg("rcm"), py::arg("dt"), py::arg("clutch") = false, py::arg("stale") = false,
-          py::arg("master_twist_filtered") = py::none(),
+          py::arg("master_twist_filtered") = py::none(), py::arg("guidance_wrench") = Wrench{},
           "One tick; everything in the slave's base frame.\n\n"
           "master_pose: (4, 4) tracked pose, master_twist: (6,). slave_pose: (4, 4) measured tip, slave_twist: (6,).\n"
           "tissue_wrench: (6,) exerted on the tissue. rcm: (3,) trocar [m]. dt: since the previous step [s].\n"
-          "stale: any of these is older than its limit. master_twist_filtered: (6,) for the damping term.")
+          "stale: any of these is older than its limit. master_twist_filtered: (6,) for the damping term.\n"
+          "guidance_wrench: (6,) further wrench on the hand, from fixtures or nearness.")
       .def("reset", &Transparency::reset, py::arg("state") = TransparencyState{},
            "Without argument: new references at the next good input (engagement).")
       .def_property_readonly("config", [](const Transparency& self) { return self.config(); })

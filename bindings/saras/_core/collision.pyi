@@ -595,7 +595,8 @@ class ProximityMonitor:
         regions_known: bool = True,
     ) -> ProximityMonitorOutput:
         """
-        One tick. tools: (a (3,), b (3,), radius) [m], Capsule, or None for one that is lost or too old.
+        One tick. tools: (a (3,), b (3,), radius) [m], Capsule, or None for one that is lost or too old;
+        or (n, 7) numbers a, b, radius, with a row that is not finite for such a one.
         base_T_regions: (4, 4) from the regions' frame to that of the tools; regions_known: it is fresh.
         """
     @property

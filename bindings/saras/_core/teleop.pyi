@@ -809,6 +809,7 @@ class Transparency:
         clutch: bool = False,
         stale: bool = False,
         master_twist_filtered: numpy.typing.ArrayLike | None = None,
+        guidance_wrench: numpy.typing.ArrayLike = ...,
     ) -> TransparencyOutput:
         """
         One tick; everything in the slave's base frame.
@@ -816,6 +817,7 @@ class Transparency:
         master_pose: (4, 4) tracked pose, master_twist: (6,). slave_pose: (4, 4) measured tip, slave_twist: (6,).
         tissue_wrench: (6,) exerted on the tissue. rcm: (3,) trocar [m]. dt: since the previous step [s].
         stale: any of these is older than its limit. master_twist_filtered: (6,) for the damping term.
+        guidance_wrench: (6,) further wrench on the hand, from fixtures or nearness.
         """
     @property
     def config(self) -> TransparencyConfig: ...

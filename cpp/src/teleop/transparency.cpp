@@ -121,6 +121,8 @@ Wrench Transparency::wrench_on_hand(const TransparencyInput& input, const Vector
     wrench.force -= config_.force_scale * input.tissue_wrench.force;
     wrench.torque -= config_.torque_scale * input.tissue_wrench.torque;
   }
+  wrench.force += input.guidance_wrench.force;
+  wrench.torque += input.guidance_wrench.torque;
   return {limit(wrench.force, config_.force_limit_N, limited), limit(wrench.torque, config_.torque_limit_Nm, limited)};
 }
 

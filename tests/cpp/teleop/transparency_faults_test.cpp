@@ -72,7 +72,8 @@ TEST(TransparencyFaults, AnySequenceOfFaultsStaysFiniteAndBounded) {
     for (int i = 0; i < 100; ++i) {
       TransparencyInput input{random.pose(0.1),       random.twist(0.5, 2.0), random.pose(0.1),
                               random.twist(0.5, 2.0), random.wrench(5, 0.1),  random.vector(0.1),
-                              random.chance(0.2),     random.chance(0.1),     {}};
+                              random.chance(0.2),     random.chance(0.1),     {},
+                              random.wrench(5, 0.1)};
       if (random.chance(0.3)) {
         double* fields[] = {&input.master_pose.translation.x(), &input.master_twist.angular.y(),
                             &input.slave_pose.rotation.w(),     &input.slave_twist.linear.z(),

@@ -132,6 +132,23 @@ TEST(Transparency, ForceIsLimitedInNormAndKeepsItsDirection) {
   EXPECT_LT((output.desired_wrench.force - 3.3 * Vector3(-0.6, 0.8, 0.0)).norm(), 1e-12);
 }
 
+TEST(Transparency, GuidanceIsAddedBeforeLimitAndRamp) {
+  auto config = without_limits();
+  config.force_limit_N = 3.0;
+  auto law = engaged(config);
+  auto input = at_rest();
+  input.guidance_wrench.force = Vector3(0, 1, 0);
+  EXPECT_LT((law.step(input, kDt).desired_wrench.force - Vector3(0, 1, 0)).norm(), 1e-12);
+  input.guidance_wrench.force = Vector3(0, 30, 0);
+  const auto limited = law.step(input, kDt);
+  EXPECT_LT((limited.desired_wrench.force - Vector3(0, 3, 0)).norm(), 1e-12);
+  EXPECT_EQ(limited.status, Status::kLimited);
+  input.guidance_wrench.force = Vector3(0, kNan, 0);
+  const auto unknown = law.step(input, kDt);
+  EXPECT_EQ(unknown.status, Status::kInvalidInput);
+  EXPECT_LE(unknown.desired_wrench.force.norm(), 3.0);
+}
+
 TEST(Transparency, DriftIsRemovedAtNoMoreThanItsLimit) {
   auto config = without_limits();
   config.drift_limit_m_s = 0.02;

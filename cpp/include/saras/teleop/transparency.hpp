@@ -48,6 +48,7 @@ struct TransparencyInput {
   bool clutch = false;                         ///< pressed: slave stands still, force fades out
   bool stale = false;                          ///< any of the above is older than its limit
   std::optional<Twist> master_twist_filtered;  ///< for the damping term; master_twist when not given
+  Wrench guidance_wrench;                      ///< further wrench on the hand: fixtures, nearness
 };
 
 struct TransparencyOutput {
@@ -68,7 +69,7 @@ struct TransparencyState {
 
 /// e = (x_s - x_s0) - s (x_m - x_m0), e_R = log((R_s R_s0^T) (R_m R_m0^T)^T); rates from the twists likewise.
 ///     position_position  w = k e + b e'      position_force  w = -lambda F      four_channel  the sum
-/// limited in norm, times a ramp that rises from 0 after each reference. The slave gets
+/// plus guidance_wrench, limited in norm, times a ramp that rises from 0 after each reference. The slave gets
 ///     (s v_m - clamp(g d), omega_m - clamp(g_R e_R)),
 /// angular velocity unscaled. d is e with the master delayed by slave_lag_s (first order): else the correction would
 /// push the set-point ahead of the master by what the servo lags. Pivoted: the tip's translation is kept, rotation
