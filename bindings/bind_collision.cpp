@@ -59,6 +59,9 @@ std::vector<SceneTool> load_tools(const py::sequence& source) {
       tools.push_back({Capsule{}, false});
     } else if (py::isinstance<Capsule>(item)) {
       tools.push_back({item.cast<Capsule>(), true});
+    } else if (py::len(item) == 7) {
+      const auto row = item.cast<Eigen::Matrix<double, 7, 1>>();
+      tools.push_back({Capsule{row.head<3>(), row.segment<3>(3), row[6]}, row.allFinite()});
     } else {
       const auto [a, b, radius_m] = item.cast<std::tuple<Vector3, Vector3, double>>();
       tools.push_back({Capsule{a, b, radius_m}, true});

@@ -75,7 +75,8 @@ void bind_proximity_monitor(py::module_& m) {
             return MonitorOutput{{output.tools.begin(), output.tools.begin() + self.tools()}, output.status};
           },
           py::arg("tools"), py::arg("dt"), py::arg("base_T_regions") = Pose{}, py::arg("regions_known") = true,
-          "One tick. tools: (a (3,), b (3,), radius) [m], Capsule, or None for one that is lost or too old.\n"
+          "One tick. tools: (a (3,), b (3,), radius) [m], Capsule, or None for one that is lost or too old;\n"
+          "or (n, 7) numbers a, b, radius, with a row that is not finite for such a one.\n"
           "base_T_regions: (4, 4) from the regions' frame to that of the tools; regions_known: it is fresh.")
       .def("reset", &ProximityMonitor::reset, py::arg("state") = S{})
       .def_property_readonly("config", [](const ProximityMonitor& self) { return self.config(); })

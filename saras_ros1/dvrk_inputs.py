@@ -22,10 +22,11 @@ from geometry_msgs.msg import PoseStamped, TransformStamped
 from std_msgs.msg import String
 
 from saras_ros1 import convert
+from saras_ros1.stamped import StampedPose
 
 POSE_TOPICS = ("/{}/measured_cp", "/dvrk/{}/position_cartesian_current")
 READERS = {
-    PoseStamped._type: (PoseStamped, convert.pose),
+    PoseStamped._type: (StampedPose, convert.pose),
     TransformStamped._type: (TransformStamped, convert.transform),
 }
 # What current_state said before CRTK while the arm was powered and homed; positions and efforts are its control modes.

@@ -23,7 +23,8 @@ STATE_STYLE = {
 }
 
 
-def _marker(namespace: str, kind: int, frame: str, colour: ColorRGBA, scale: tuple[float, float, float]) -> Marker:
+def new_marker(namespace: str, kind: int, frame: str, colour: ColorRGBA, scale: tuple[float, float, float]) -> Marker:
+    """An identity-posed marker; ids are 0: the namespace tells them apart."""
     marker = Marker(ns=namespace, type=kind, action=Marker.ADD, color=colour)
     marker.header.frame_id = frame
     marker.pose.orientation.w = 1.0
@@ -43,7 +44,7 @@ def force(namespace: str, frame: str, at: Point | None, wrench: Any | None) -> M
     f = wrench.wrench.force
     if not math.hypot(f.x, f.y, f.z) >= SMALLEST_ARROW_N:  # neither small nor NaN
         return remove(namespace)
-    marker = _marker(namespace, Marker.ARROW, frame, ORANGE, (0.004, 0.009, 0.012))
+    marker = new_marker(namespace, Marker.ARROW, frame, ORANGE, (0.004, 0.009, 0.012))
     k = ARROW_M_PER_N
     marker.points = [at, Point(at.x + k * f.x, at.y + k * f.y, at.z + k * f.z)]
     return marker
@@ -53,7 +54,7 @@ def ball(namespace: str, frame: str, at: Point | None, colour: ColorRGBA, diamet
     """A ball at a point."""
     if at is None:
         return remove(namespace)
-    marker = _marker(namespace, Marker.SPHERE, frame, colour, (diameter_m,) * 3)
+    marker = new_marker(namespace, Marker.SPHERE, frame, colour, (diameter_m,) * 3)
     marker.pose.position = at
     return marker
 
@@ -62,7 +63,7 @@ def trail(namespace: str, frame: str, points: list[Point], colour: ColorRGBA) ->
     """A line through the last points."""
     if len(points) < 2:
         return remove(namespace)
-    marker = _marker(namespace, Marker.LINE_STRIP, frame, colour, (0.0015, 0.0, 0.0))
+    marker = new_marker(namespace, Marker.LINE_STRIP, frame, colour, (0.0015, 0.0, 0.0))
     marker.points = points
     return marker
 
@@ -71,7 +72,7 @@ def label(namespace: str, frame: str, height_m: float, state: Any | None, energi
     """State and energies of a side; a grey "?" for what is not known."""
     name, colour = STATE_STYLE.get(state.state, ("?", GREY)) if state is not None else ("?", GREY)
     levels = "\n".join(f"{tank} {'?' if s is None else format(s.energy_J, '.2f')} J" for tank, s in energies.items())
-    marker = _marker(namespace, Marker.TEXT_VIEW_FACING, frame, colour, (0.0, 0.0, 0.025))
+    marker = new_marker(namespace, Marker.TEXT_VIEW_FACING, frame, colour, (0.0, 0.0, 0.025))
     marker.pose.position.z = height_m
     marker.text = f"{namespace.split()[0]} {name}\n{levels}"
     if state is not None and state.state in (0, 3):

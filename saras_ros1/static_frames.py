@@ -15,6 +15,7 @@ class StaticFrames:
 
     def __init__(self) -> None:
         self._buffer = tf2_ros.Buffer(debug=False)
+        self.changes = 0  #: number of messages with static transforms so far
         rospy.Subscriber("/tf_static", TFMessage, self._on_transforms, queue_size=20, tcp_nodelay=True)
 
     def _on_transforms(self, message: TFMessage) -> None:
@@ -25,6 +26,7 @@ class StaticFrames:
                 rospy.logerr(f"/tf_static: {transform.header.frame_id} → {transform.child_frame_id} refused: {error}")
             else:
                 self._buffer.set_transform_static(transform, "tf_static")
+        self.changes += 1
 
     def known(self, target: str, source: str) -> bool:
         """Whether target_T_source can be computed now."""

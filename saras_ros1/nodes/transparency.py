@@ -5,11 +5,13 @@ from __future__ import annotations
 import numpy as np
 from geometry_msgs.msg import PoseStamped, TwistStamped, WrenchStamped
 
+from saras.collision import RepulsiveForce, RepulsiveForceConfig
 from saras.teleop import Transparency, TransparencyConfig, TransparencyMode, TwistEstimatorConfig
 from saras_ros1 import convert
 from saras_ros1.arm_inputs import ArmInputs
 from saras_ros1.channel import SIDES, Channel, base_frame
 from saras_ros1.node import Node, Tick, run
+from saras_ros1.proximity import Proximity
 
 ZERO = np.zeros(6)
 
@@ -29,6 +31,8 @@ class Side:
         self.twist = node.input(f"{source}/tracked_twist", TwistStamped, read_twist, timeout_s=timeout_s)
         self.filtered = node.input(f"{source}/tracked_twist_filtered", TwistStamped, read_twist, timeout_s=timeout_s)
         self.law = node.law(f"transparency_{side}", Transparency, node.config)
+        self.side, self.proximity = side, node.proximity
+        self.repulsion = RepulsiveForce(node.repulsion_config)
         self.wrench_out = node.output(f"/transparency/{side}/desired_wrench", WrenchStamped)
         self.twist_out = node.output(f"/transparency/{side}/desired_twist", TwistStamped)
         self.status = "WAITING"
@@ -52,11 +56,19 @@ class Side:
             tissue_wrench=self.arm.exerted_wrench,
             rcm=self.arm.rcm.value,
             clutch=self.channel.clutch,
+            guidance_wrench=self._repulsion(tick.dt),
             stale=not (live and self.channel.engaged),
             dt=tick.dt,
         )
         self.status, self.error = out.status.name, out.error
         return self._publish(out.desired_wrench, out.desired_twist, tick)
+
+    def _repulsion(self, dt: float) -> np.ndarray:
+        """(6,) on the hand, away from what the tool is near to; zero when that is not known."""
+        if self.proximity is None:
+            return ZERO
+        near = self.proximity.of(self.side)
+        return self.repulsion.step(distance_m=near.distance_m, normal=near.approach_direction, dt=dt).wrench
 
     def _publish(self, wrench: np.ndarray, twist: np.ndarray, tick: Tick) -> None:
         self.twist_out.publish(convert.twist_msg(twist, self.frame, tick.stamp_ns))
@@ -73,7 +85,13 @@ class TransparencyNode(Node):
         self.arm_timeout_s = self.params.number("arm_timeout_s", 0.005, 1.0)
         self.config = self.params.build(TransparencyConfig, "law")
         self.twist_config = self.params.build(TwistEstimatorConfig, "slave_twist")
+        proximity = self.params.section("proximity_force")
+        collision_timeout_s = proximity.number("timeout_s", 0.02, 0.15)
+        wanted = proximity.flag("enabled")
+        self.repulsion_config = proximity.build(RepulsiveForceConfig, "law")
         self.params.finish()
+        # No force comes from what is unknown: the speed scale does not matter here.
+        self.proximity = Proximity(self, SIDES, collision_timeout_s, 0.0) if wanted else None
         self.sides = {side: Side(self, side) for side in SIDES}
 
     def report(self) -> dict:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import rospy
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from tf2_msgs.msg import TFMessage
@@ -11,6 +13,7 @@ from saras_ros1 import convert
 from saras_ros1.arm_inputs import ArmInputs
 from saras_ros1.channel import SIDES, Channel, base_frame
 from saras_ros1.node import Node, Tick, run
+from saras_ros1.proximity import Proximity
 
 
 class VelocityIntegratorNode(Node):
@@ -25,6 +28,10 @@ class VelocityIntegratorNode(Node):
         arm_timeout_s = self.params.number("arm_timeout_s", 0.005, 1.0)
         self.tf_every = self.params.integer("tf_every", 1, 1000)
         config = self.params.build(VelocityIntegratorConfig, "law")
+        slowdown = self.params.section("proximity_slowdown")
+        collision_timeout_s = slowdown.number("timeout_s", 0.02, 0.15)
+        unknown_speed_m_s = slowdown.number("unknown_speed_m_s", 0.0, config.speed_limit_m_s)
+        wanted = slowdown.flag("enabled")
         self.params.finish()
 
         self.frame = base_frame(side)
@@ -32,6 +39,8 @@ class VelocityIntegratorNode(Node):
         self.arm = ArmInputs(self, side, arm_timeout_s)
         twist = convert.in_frame(self.frame, convert.twist)
         self.twist = self.input(f"/tank_slave/{side}/twist", TwistStamped, twist, timeout_s=twist_timeout_s)
+        unknown_scale = unknown_speed_m_s / config.speed_limit_m_s
+        self.proximity = Proximity(self, (side,), collision_timeout_s, unknown_scale) if wanted else None
         self.set_point = self.output(f"/mesa_{side}/set_point", PoseStamped)
         self.tf = self.output("/tf", TFMessage)
         self.integrator = self.law(f"velocity_integrator_{side}", VelocityIntegrator, config)
@@ -58,6 +67,7 @@ class VelocityIntegratorNode(Node):
                 rcm=self.arm.rcm.value,
                 stale=tick.stale,
                 dt=tick.dt,
+                **self._bounds(),
             )
         if self.last is None or not self.last.has_set_point:
             return
@@ -68,6 +78,17 @@ class VelocityIntegratorNode(Node):
             child = f"mesa_{self.side}/set_point"
             transform = convert.transform_msg(self.last.set_point, self.frame, child, rospy.Time.now())
             self.tf.publish(TFMessage([transform]))
+
+    def _bounds(self) -> dict[str, Any]:
+        """How fast the tool may go where it is."""
+        if self.proximity is None:
+            return {}
+        near = self.proximity.of(self.side)
+        return {
+            "max_speed_scale": near.max_speed_scale,
+            "approach_direction": near.approach_direction,
+            "approach_speed_limit_m_s": near.approach_speed_limit_m_s,
+        }
 
     def report(self) -> dict:
         """Law status, lead and which bounds acted."""
