@@ -14,7 +14,7 @@ from saras_ros1.node import Node
 WORLD = "world"
 
 
-class UnknownTool(Exception):
+class UnknownToolError(Exception):
     """The tool's place is not known now; the text says why."""
 
 
@@ -31,11 +31,11 @@ class MesaTool:
         return self._arm.pose
 
     def ends(self, frames: LiveFrames) -> tuple[np.ndarray, np.ndarray]:
-        """(3,) tip and (3,) trocar in the world [m]. Raises UnknownTool, UnknownFrame."""
+        """(3,) tip and (3,) trocar in the world [m]. Raises UnknownToolError, UnknownFrameError."""
         if not self._arm.pose.fresh:
-            raise UnknownTool(f"no fresh pose on {self._arm.pose.topic}")
+            raise UnknownToolError(f"no fresh pose on {self._arm.pose.topic}")
         if self._arm.rcm.value is None:
-            raise UnknownTool(f"no trocar on {self._arm.rcm.topic}")
+            raise UnknownToolError(f"no trocar on {self._arm.rcm.topic}")
         world_T_base = frames.fresh(WORLD, self.frame)
         tip = world_T_base[:3, :3] @ self._arm.pose.value[:3, 3] + world_T_base[:3, 3]
         return tip, world_T_base[:3, :3] @ self._arm.rcm.value + world_T_base[:3, 3]
@@ -54,9 +54,9 @@ class DvrkTool:
         return None
 
     def ends(self, frames: LiveFrames) -> tuple[np.ndarray, np.ndarray]:
-        """(3,) tip and (3,) trocar in the world [m]. Raises UnknownTool, UnknownFrame."""
+        """(3,) tip and (3,) trocar in the world [m]. Raises UnknownToolError, UnknownFrameError."""
         if not self._arm.fresh:
-            raise UnknownTool(self._arm.unknown_reason)
+            raise UnknownToolError(self._arm.unknown_reason.removeprefix(f"{self.name}: "))
         world_T_reference = frames.fresh(WORLD, self._arm.frame_id)
         tip = world_T_reference[:3, :3] @ self._arm.pose[:3, 3] + world_T_reference[:3, 3]
         return tip, frames.fresh(WORLD, self.name)[:3, 3]

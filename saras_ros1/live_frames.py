@@ -11,7 +11,7 @@ from saras_ros1 import convert
 from saras_ros1.static_frames import StaticFrames
 
 
-class UnknownFrame(Exception):
+class UnknownFrameError(Exception):
     """A transform that is missing, too old, or not rigid; the text says which and why."""
 
 
@@ -34,7 +34,7 @@ class LiveFrames(StaticFrames):
                 rospy.logwarn_throttle(1.0, f"/tf: {names} refused: {error}")
 
     def fresh(self, target: str, source: str) -> np.ndarray:
-        """(4, 4) target_T_source, static or younger than timeout_s; else UnknownFrame."""
+        """(4, 4) target_T_source, static or younger than timeout_s; else UnknownFrameError."""
         changes, matrix = self._static.get((target, source), (-1, None))
         if changes == self.changes and matrix is not None:
             return matrix
@@ -42,16 +42,16 @@ class LiveFrames(StaticFrames):
         try:
             found = self._buffer.lookup_transform(target, source, rospy.Time(0))
         except tf2_ros.TransformException as error:
-            raise UnknownFrame(f"no transform {target} ← {source} ({error})") from None
+            raise UnknownFrameError(f"no transform {target} ← {source} ({error})") from None
         static = found.header.stamp.is_zero()  # every step of the chain is static
         if not static:
             age_s = (rospy.Time.now() - found.header.stamp).to_sec()
             if abs(age_s) > self.timeout_s:  # a stamp from the future is no better
-                raise UnknownFrame(f"transform {target} ← {source} is {1e3 * age_s:.0f} ms old")
+                raise UnknownFrameError(f"transform {target} ← {source} is {1e3 * age_s:.0f} ms old")
         try:
             matrix = convert.transform(found)
         except ValueError as error:
-            raise UnknownFrame(f"transform {target} ← {source}: {error}") from None
+            raise UnknownFrameError(f"transform {target} ← {source}: {error}") from None
         if static:
             self._static[target, source] = (changes, matrix)
         return matrix

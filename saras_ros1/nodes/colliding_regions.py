@@ -11,9 +11,10 @@ from saras import Error
 from saras.collision import ForbiddenRegions, Partner, ProximityMonitor, ProximityMonitorConfig
 from saras_ros1 import collision_markers
 from saras_ros1.channel import SIDES
+from saras_ros1.collision_markers import NAMES
 from saras_ros1.collision_messages import tool_message
-from saras_ros1.collision_tools import WORLD, DvrkTool, MesaTool, UnknownTool
-from saras_ros1.live_frames import LiveFrames, UnknownFrame
+from saras_ros1.collision_tools import WORLD, DvrkTool, MesaTool, UnknownToolError
+from saras_ros1.live_frames import LiveFrames, UnknownFrameError
 from saras_ros1.msg import CollisionState
 from saras_ros1.node import Node, Tick, run
 
@@ -77,7 +78,7 @@ class CollidingRegions(Node):
         for i, tool in enumerate(self.tools):
             try:
                 tip, trocar = tool.ends(self.frames)
-            except (UnknownTool, UnknownFrame) as error:
+            except (UnknownToolError, UnknownFrameError) as error:
                 reasons[i] = f"{tool.name}: {error}"
             else:
                 capsules[i, :3], capsules[i, 3:6], capsules[i, 6] = tip, trocar, tool.radius_m
@@ -85,7 +86,7 @@ class CollidingRegions(Node):
         if len(self.regions):
             try:
                 world_T_regions = self.frames.fresh(WORLD, self.marker_frame)
-            except UnknownFrame as error:
+            except UnknownFrameError as error:
                 regions_reason = f"regions: {error}"
         out = self.monitor.step(
             tools=capsules, dt=tick.dt, base_T_regions=world_T_regions, regions_known=not regions_reason
@@ -130,7 +131,7 @@ class CollidingRegions(Node):
         with self.lock:
             tools = self.last.tools
         return {
-            tool.name: f"{collision_markers.NAMES[tool.state]} {1e3 * tool.distance:.1f} mm {tool.partner} {tool.reason}"
+            tool.name: f"{NAMES[tool.state]} {1e3 * tool.distance:.1f} mm {tool.partner} {tool.reason}"
             for tool in tools
         }
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Distances over the wire: right numbers, unknown in time, and the speed bound. Tests run in the order of their names."""
+"""Distances over the wire: right numbers, unknown in time, the speed bound. Tests run in the order of their names."""
 
 from __future__ import annotations
 

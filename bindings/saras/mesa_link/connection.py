@@ -19,6 +19,7 @@ from typing import Any
 import aiohttp
 import socketio
 
+from saras.mesa_link import wire_json
 from saras.mesa_link.driver import ArmLinkError, LinkStats, Received
 from saras.mesa_link.fields import MessageError
 from saras.mesa_link.lag import LagMeter
@@ -47,6 +48,11 @@ class Command:
     part: Target | Tool
     echo_tick: int
     session: int
+
+
+class _Packet(socketio.packet.Packet):  # type: ignore[misc]
+    json = wire_json
+    uses_binary_events = False
 
 
 class Connection:
@@ -145,7 +151,9 @@ class Connection:
                 await asyncio.sleep(self._times.retry_s)
 
     async def _connect_and_serve(self, http: aiohttp.ClientSession) -> None:
-        self._client = client = socketio.AsyncClient(reconnection=False, handle_sigint=False, http_session=http)
+        self._client = client = socketio.AsyncClient(
+            reconnection=False, handle_sigint=False, http_session=http, serializer=_Packet
+        )
         client.on("state", self._on_state)
         client.on("truth", self._on_truth)
         client.on("nack", self._on_nack)

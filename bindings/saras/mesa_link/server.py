@@ -17,6 +17,7 @@ import socketio
 from aiohttp import web
 
 from saras import ConfigError
+from saras.mesa_link import wire_json
 from saras.mesa_link.commands import CommandTable
 from saras.mesa_link.faults import FaultInjector
 from saras.mesa_link.fields import MessageError
@@ -59,12 +60,12 @@ class ArmServerConfig:
 class _Json:
     """JSON for packets; what cannot be parsed becomes a ``malformed`` event, so that its sender can be told."""
 
-    dumps = staticmethod(json.dumps)
+    dumps = staticmethod(wire_json.dumps)
 
     @staticmethod
     def loads(text: str) -> Any:
         try:
-            return json.loads(text)
+            return json.loads(text)  # reads NaN too, so that its sender hears that it is not finite
         except ValueError as error:
             return ["malformed", str(error)]
 

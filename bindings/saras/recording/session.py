@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from saras.recording.bag import Bag, Topic
+from saras.recording.collision import ToolDistances, tool_distances
 from saras.recording.series import (
     JointSeries,
     PoseSeries,
@@ -162,6 +163,11 @@ class Session:
     def tank(self, name: str) -> Topic | None:
         """saras_ros1/TankState of ``tank_master``, ``tank_slave``, ``port_guard_left``, ``port_guard_right``."""
         return self._bag.topic(f"/{name}/state")
+
+    @property
+    def distances(self) -> list[ToolDistances]:
+        """How near each tool was to the others and to the forbidden regions; empty when that was not recorded."""
+        return tool_distances(self._bag.topic("/collision/state"))
 
     @property
     def info(self) -> dict[str, Any]:

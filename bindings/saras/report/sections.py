@@ -8,6 +8,7 @@ from typing import Any
 
 from saras.recording import Session
 from saras.recording.session import CHANNEL_STATES
+from saras.report.distances import distances
 from saras.report.motion import forces, remote_centre, trajectories
 from saras.report.parts import COLORS, both_sides, chart, clutch_bands, table
 from saras.report.passivity import damping, ledger, tanks
@@ -23,6 +24,7 @@ def sections(session: Session, found: Findings) -> list[tuple[str, str]]:
         ("Timeline", timeline),
         ("Trajectories", trajectories),
         ("Forces", forces),
+        ("Distances", distances),
         ("Tank energy", tanks),
         ("Energy ledger", ledger),
         ("Damping and reduction", damping),

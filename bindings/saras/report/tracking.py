@@ -42,7 +42,7 @@ def engaged(session: Session, side: str, t: Floats) -> Flags:
 
 
 def free_motion(session: Session, side: str, t: Floats) -> Flags:
-    """Engaged, no clutch, no contact, no reduction, and none of these within the last SETTLE_S."""
+    """Engaged, no clutch, contact, reduction or slow-down near things, and none of these within the last SETTLE_S."""
     good = engaged(session, side, t)
     wrench = session.arm(f"mesa_{side}").measured_cf
     if wrench is not None:
@@ -52,6 +52,9 @@ def free_motion(session: Session, side: str, t: Floats) -> Flags:
         tank = session.tank(name)
         if tank is not None:
             good &= np.interp(t, tank.t, tank["reduction"], left=0.0) <= 0.0
+    for tool in session.distances:
+        if tool.name == f"mesa_{side}":  # near something it may not go where the hand wants it
+            good &= np.interp(t, tool.t, tool.slowed.astype(float), left=0.0, right=0.0) <= 0.0
     last_bad = np.maximum.accumulate(np.where(good, -np.inf, t))
     return np.asarray(good & (t - last_bad > SETTLE_S), dtype=bool)
 

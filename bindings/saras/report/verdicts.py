@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from saras.recording import Event, Session
+from saras.recording.collision import COLLISION, UNKNOWN, WARNING
 from saras.report import energy, timing, tracking
 from saras.report.timing import Latency, Rate
 from saras.report.tracking import Tracking
@@ -20,6 +21,7 @@ REMOTE_CENTRE_MM = 0.1
 RATE_HZ = 100.0
 RATE_SHARE = 0.98  #: of the nominal rate that counts as held
 LEDGER_RELATIVE = 1e-9
+UNKNOWN_SHARE = 0.01  #: of the time; more unknown distances than that, and nothing is said of the rest
 SIDES = ("left", "right")
 
 
@@ -79,6 +81,7 @@ def examine(session: Session) -> Findings:
             *(_tracking(side, found.tracking[side], found.set_point_tracking[side]) for side in SIDES),
             _rate(session, found),
             _remote_centre(session),
+            _distance(session, since),
         ]
     )
     return found
@@ -172,6 +175,29 @@ def _rate(session: Session, found: Findings) -> Verdict:
     if missing and grade == "good":
         grade, detail = "unknown", f"{detail}; {missing} of {len(found.rates)} topics not recorded"
     return Verdict("Node rate", f"{rate.mean_hz:.1f} Hz", detail, grade)
+
+
+def _distance(session: Session, since: float) -> Verdict:
+    title = "Least distance"
+    tools = [tool for tool in session.distances if (tool.t >= since).any()]
+    known = [tool for tool in tools if np.isfinite(tool.distance_m[tool.t >= since]).any()]
+    if not known:
+        return Verdict(title, "unknown", "/collision/state was not recorded, or never known", "unknown")
+    rows = []
+    for tool in known:
+        late = np.flatnonzero(tool.t >= since)
+        i = int(late[np.nanargmin(tool.distance_m[late])])
+        rows.append((float(tool.distance_m[i]), f"{tool.name} - {tool.partner[i]} at {tool.t[i]:.1f} s"))
+    least, where = min(rows)
+    states = np.concatenate([tool.state[tool.t >= since] for tool in tools])
+    unknown = float(np.mean(states == UNKNOWN))
+    if (states == COLLISION).any():
+        grade = "bad"
+    elif unknown > UNKNOWN_SHARE:
+        grade = "unknown"
+    else:
+        grade = "warning" if (states == WARNING).any() else "good"
+    return Verdict(title, f"{1e3 * least:.1f} mm", f"{where}; unknown {100.0 * unknown:.1f} % of the time", grade)
 
 
 def _remote_centre(session: Session) -> Verdict:
