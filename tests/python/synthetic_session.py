@@ -43,7 +43,7 @@ class BagWriter:
         self.seqs: dict[str, int] = {}
         self.pending: list[tuple[int, object, bytes]] = []
 
-    def make(self, name: str, **fields):
+    def make(self, name: str, /, **fields):
         return self.store.types[name](**fields)
 
     def header(self, topic: str, t: float, frame: str = ""):
@@ -140,11 +140,44 @@ def write_session(path: Path, duration_s: float = 12.0) -> Path:
         charged = GRANTED_J if t >= 1.0 else 0.0
         write_tank(bag, "tank_master", t, charged + lent - drain, 0.0, lent)
         write_tank(bag, "tank_slave", t, charged - lent, lent, 0.0)
+        if tick % 2 == 0:
+            write_distances(bag, t)
         for side in ("left", "right"):
             write_side(bag, side, t)
             write_tank(bag, f"port_guard_{side}", t, charged - 0.5 * drain, 0.0, 0.0)
     bag.close()
     return path
+
+
+def tip_distance(t: float) -> tuple[float, int]:
+    """Of mesa_left from PSM1 [m], and its state: a warning from 13.5 to 14.5 s, unknown before 0.5 s."""
+    distance = 0.05 - 0.045 * max(0.0, 1.0 - abs(t - 14.0) / 4.5)
+    return distance, 0 if t < 0.5 else 2 if distance < 0.01 else 1
+
+
+def write_distances(bag: BagWriter, t: float) -> None:
+    distance, state = tip_distance(t)
+    zero, nan = {"x": 0.0, "y": 0.0, "z": 0.0}, float("nan")
+    point, vector = (bag.make(f"geometry_msgs/msg/{name}", **zero) for name in ("Point", "Vector3"))
+    tool = bag.make(
+        "saras_ros1/msg/ToolCollision",
+        name="mesa_left",
+        state=state,
+        reason="PSM2: silent" if state == 0 else "",
+        distance=nan if state == 0 else distance,
+        partner="PSM1",
+        known_distance=distance,
+        on_tool=point,
+        on_partner=point,
+        normal=vector,
+        tip=point,
+        trocar=point,
+        radius=0.0025,
+        max_speed_scale=1.0,
+        approach_speed_limit=min(0.1, max(0.0, 0.1 * (distance - 0.001) / 0.014)),
+    )
+    topic = "/collision/state"
+    bag.put(topic, "saras_ros1/msg/CollisionState", t, header=bag.header(topic, t, "world"), tools=[tool])
 
 
 def write_side(bag: BagWriter, side: str, t: float) -> None:

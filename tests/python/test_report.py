@@ -13,7 +13,7 @@ pytest.importorskip("rosbags")
 import synthetic_session as synthetic
 
 from saras.recording import Session, Topic
-from saras.report import examine, write_report
+from saras.report import examine, tracking, write_report
 from saras.report.energy import account
 from saras.report.svg import Chart, decimate, ticks
 from saras.report.timing import latency, rate
@@ -53,6 +53,27 @@ def test_books_balance(found):
     assert verdict(found, "Energy ledger").grade == "good"
     assert found.ledger.flight_J == pytest.approx(0.0, abs=1e-12)
     assert [a.granted_J for a in found.ledger.accounts] == [0.4] * 4
+
+
+def test_least_distance_names_who_and_when(bag, found):
+    tile = verdict(found, "Least distance")
+    assert tile.value == "5.0 mm"
+    assert tile.detail.startswith("mesa_left - PSM1 at 14.0 s")
+    assert tile.grade == "warning"
+    with Session.open(bag) as session:
+        (tool,) = session.distances
+    # 10 mm, 11 mm and so on are reached linearly: 45 mm in 4.5 s.
+    assert tool.seconds_in(2) == pytest.approx(1.0, abs=0.03)
+    assert tool.seconds_in(0) == pytest.approx(0.5, abs=0.03)
+    assert tool.t[tool.slowed].min() == pytest.approx(13.0, abs=0.03)
+
+
+def test_slowed_motion_is_not_free(bag):
+    with Session.open(bag) as session:
+        grid = tracking.time_grid(session)
+        free = tracking.free_motion(session, "left", grid)
+    assert not free[(grid > 13.1) & (grid < 15.9)].any()
+    assert free[(grid > 17.0) & (grid < 17.2)].any() or free[(grid > 3.0) & (grid < 6.0)].any()
 
 
 def test_what_was_not_recorded_is_unknown(found):
