@@ -11,14 +11,16 @@ from diagnostic_msgs.msg import DiagnosticArray
 from rich.table import Table
 from rich.text import Text
 
+from saras_ros1.collision_markers import NAMES as DISTANCE_STATES
 from saras_ros1.latest import Latest
-from saras_ros1.msg import ChannelState, TankState
+from saras_ros1.msg import ChannelState, CollisionState, TankState
 
 SIDES = ("left", "right")
 TANKS = ("tank_master", "tank_slave", "port_guard_left", "port_guard_right")
 DIAGNOSTICS_STALE_S = 3.0
 STATE_NAMES = {0: "WAITING", 1: "READY", 2: "ENGAGED", 3: "HOLD"}
 _STATE_STYLE = {0: "yellow", 1: "cyan", 2: "bold green", 3: "bold white on red"}
+_DISTANCE_STYLE = {0: "dim italic", 1: "green", 2: "bold yellow", 3: "bold white on red"}
 _LEVEL_STYLE = {0: "green", 1: "yellow", 2: "red", 3: "magenta"}
 UNKNOWN = Text("unknown", style="dim italic")
 
@@ -31,6 +33,7 @@ class Status:
         self._nodes: dict[str, tuple[float, Any]] = {}
         self.sides = {side: Latest(f"/system/{side}/state", ChannelState) for side in SIDES}
         self.tanks = {name: Latest(f"/{name}/state", TankState) for name in TANKS}
+        self.distances = Latest("/collision/state", CollisionState)
         rospy.Subscriber("/diagnostics", DiagnosticArray, self._on_diagnostics, queue_size=50)
 
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
@@ -45,7 +48,7 @@ class Status:
     def table(self, title: str = "") -> Table:
         """All of it, for rich."""
         grid = Table.grid(padding=(0, 3))
-        grid.add_row(self._sides_table(), self._tanks_table())
+        grid.add_row(self._sides_table(), self._tanks_table(), self._distances_table())
         outer = Table.grid()
         if title:
             outer.add_row(Text(title, style="bold"))
@@ -63,7 +66,32 @@ class Status:
         for name, latest in self.tanks.items():
             tank = latest.value()
             parts.append(f"{name} " + ("unknown" if tank is None else f"{tank.energy_J:.3f} J"))
-        return " | ".join(parts)
+        return " | ".join([*parts, self._distance_words()])
+
+    def _distance_words(self) -> str:
+        state = self.distances.value()
+        if state is None or not state.tools:
+            return "distances unknown"
+        unknown = [tool.name for tool in state.tools if tool.state == 0]
+        known = [tool for tool in state.tools if tool.known_distance == tool.known_distance]
+        words = f"distances unknown: {' '.join(unknown)}" if unknown else "nearest"
+        if known:
+            least = min(known, key=lambda tool: tool.known_distance)
+            words += f" {1e3 * least.known_distance:.1f} mm {least.name}-{least.partner} {DISTANCE_STATES[least.state]}"
+        return words
+
+    def _distances_table(self) -> Table:
+        table = Table("tool", "state", "mm", "to", title="distances", title_justify="left")
+        state = self.distances.value()
+        if state is None:
+            table.add_row("all", UNKNOWN, UNKNOWN, "")
+            return table
+        for tool in state.tools:
+            name = Text(DISTANCE_STATES.get(tool.state, "?"), style=_DISTANCE_STYLE.get(tool.state, ""))
+            known = tool.known_distance == tool.known_distance
+            distance: Any = f"{1e3 * tool.known_distance:.1f}" if known else UNKNOWN
+            table.add_row(tool.name, name, distance, tool.partner)
+        return table
 
     def _sides_table(self) -> Table:
         table = Table("side", "state", "clutch", "what is wrong, what to do", title="sides", title_justify="left")

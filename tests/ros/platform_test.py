@@ -13,7 +13,7 @@ import rospy
 import rostest
 import tf2_ros
 from geometry_msgs.msg import PoseStamped
-from saras_ros1.msg import ArmTruth, ChannelState, TankState
+from saras_ros1.msg import ArmTruth, ChannelState, CollisionState, TankState
 from std_srvs.srv import Trigger
 from support import Newest, wait_until
 
@@ -24,6 +24,7 @@ NODES = {
     "/frames", "/supervisor", "/touchball_receiver", "/tf_transformer_left", "/tf_transformer_right", "/transparency",
     "/tank_master", "/tank_slave", "/velocity_integrator_left", "/velocity_integrator_right", "/tool_command",
     "/arm_state_left", "/arm_state_right", "/arm_driver_left", "/arm_driver_right", "/visualization",
+    "/colliding_regions", "/dvrk_sim",
 }  # fmt: skip
 FRAMES = ["sbs_world", "rcm", "tool_tip", "set_point"]
 
@@ -43,6 +44,7 @@ class PlatformTest(unittest.TestCase):
         cls.tip = {s: Newest(f"/mesa_{s}/ee_pose", PoseStamped) for s in SIDES}
         cls.truth = {s: Newest(f"/mesa_{s}/truth", ArmTruth) for s in SIDES}
         cls.guard = {s: Newest(f"/port_guard_{s}/state", TankState) for s in SIDES}
+        cls.distances = Newest("/collision/state", CollisionState)
         cls.buffer = tf2_ros.Buffer()
         cls.listener = tf2_ros.TransformListener(cls.buffer)
 
@@ -81,12 +83,23 @@ class PlatformTest(unittest.TestCase):
             handle = f"touchball_{side}/handle"
             wait_until(lambda name=handle: self.buffer.can_transform("world", name, rospy.Time(0)), handle)
 
+    def test_3b_all_distances_are_known(self):
+        def known():
+            message = self.distances.message
+            return message and len(message.tools) == 5 and all(tool.state != tool.UNKNOWN for tool in message.tools)
+
+        wait_until(known, lambda: self.distances.message)
+        for name in ("PSM1_tool_tip", "PSM2_tool_tip", "ECM_tool_tip"):
+            wait_until(lambda name=name: self.buffer.can_transform("world", name, rospy.Time(0)), f"world ← {name}")
+
     def test_4_a_killed_arm_holds_its_side_alone(self):
         kill("/arm_state_right")
         self.await_state("right", ChannelState.HOLD)
         self.assertIn("arm state", self.state["right"].message.reason)
         self.assertEqual(self.state["left"].message.state, ChannelState.ENGAGED)
         self.set_point["left"].next("the left side goes on")
+        # Nobody knows where the right tool is: no other one is clear any more.
+        wait_until(lambda: all(t.state != t.CLEAR for t in self.distances.message.tools), self.distances.message)
 
     def test_5_a_silent_link_holds(self):
         kill("/touchball_receiver")

@@ -111,6 +111,8 @@ def control_topics(session: Session) -> list[tuple[str, str]]:
             (f"velocity_integrator_{side}", f"/mesa_{side}/set_point"),
             (f"arm_state {side}", f"/mesa_{side}/ee_pose"),
         ]
+    if "/collision/distances" in session.topics:  # it need not run
+        rows.append(("colliding_regions", "/collision/distances"))
     return rows
 
 
