@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from saras_ros1.arm_inputs import ArmInputs
@@ -44,9 +46,10 @@ class MesaTool:
 class DvrkTool:
     """An instrument or the endoscope of a da Vinci: tip from measured_cp, trocar = origin of the arm's own frame."""
 
-    def __init__(self, node: Node, name: str, radius_m: float, timeout_s: float, frame_override: str) -> None:
+    def __init__(self, node: Node, name: str, radius_m: float, **options: Any) -> None:
+        """options: of DvrkArmInput."""
         self.name, self.radius_m = name, radius_m
-        self._arm = DvrkArmInput(node, name, timeout_s=timeout_s, frame_override=frame_override)
+        self._arm = DvrkArmInput(node, name, **options)
 
     @property
     def primary(self) -> Input | None:

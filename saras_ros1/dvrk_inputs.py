@@ -38,11 +38,15 @@ class DvrkArmInput:
     """The newest good pose of one arm, and whether it may be believed.
 
     node: the Node in whose process it reads; None in tests. timeout_s: an older pose, or one whose stamp does not move
-    on, is unknown. frame_override: used instead of the header's frame_id. The arm must say that it is ENABLED.
+    on, is unknown. frame_override: used instead of the header's frame_id. An arm that says its state must be
+    ENABLED; require_state: it must say it (recordings of before CRTK have no state in them).
     """
 
-    def __init__(self, node: Any, name: str, *, timeout_s: float, frame_override: str = "") -> None:
+    def __init__(
+        self, node: Any, name: str, *, timeout_s: float, frame_override: str = "", require_state: bool = False
+    ) -> None:
         self.name, self.timeout_s, self.frame_override = name, timeout_s, frame_override
+        self.require_state = require_state
         self.received = self.rejected = 0
         self._raw: tuple[str, bytes] | None = None
         self._received_s = float("-inf")
@@ -105,7 +109,7 @@ class DvrkArmInput:
             return f"{self.name}: nothing on {' or '.join(topic.format(self.name) for topic in POSE_TOPICS)}"
         if self.age_s > self.timeout_s:
             return f"{self.name}: pose is {self.age_s:.2f} s old: must be at most {self.timeout_s:g}"
-        if self.state != "ENABLED":
+        if self.state != "ENABLED" and (self.state or self.require_state):
             return f"{self.name}: state is {self.state or 'not known'}: must be ENABLED"
         try:
             _, _, frame = self._decode()

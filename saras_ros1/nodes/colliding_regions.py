@@ -66,10 +66,14 @@ class CollidingRegions(Node):
         radius_m = mesa.number("radius_m", 0.0, 0.1)
         tools: list[MesaTool | DvrkTool] = [MesaTool(self, side, radius_m, timeout_s) for side in SIDES]
         radius_m, endoscope_radius_m = dvrk.number("radius_m", 0.0, 0.1), dvrk.number("endoscope_radius_m", 0.0, 0.1)
-        override = dvrk.text("frame_override", empty=True)
+        options = {
+            "timeout_s": timeout_s,
+            "frame_override": dvrk.text("frame_override", empty=True),
+            "require_state": dvrk.flag("require_state"),
+        }
         for name in dvrk.texts("arms"):
             radius = endoscope_radius_m if name.startswith("ECM") else radius_m
-            tools.append(DvrkTool(self, name, radius, timeout_s, override))
+            tools.append(DvrkTool(self, name, radius, **options))
         return tools
 
     def step(self, tick: Tick) -> None:

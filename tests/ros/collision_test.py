@@ -61,7 +61,7 @@ class Collision(unittest.TestCase):
     def test_01_without_bones_nothing_is_clear(self) -> None:
         tool = self.await_state("mesa_left", UNKNOWN, reason="regions: no transform")
         self.assertTrue(math.isnan(tool.distance))
-        self.assertTrue(math.isfinite(tool.known_distance), "the other tools are known")
+        wait_until(lambda: math.isfinite(self.tool("mesa_left").known_distance), "the other tools known")
         for _ in range(20):
             message = self.state.next()
             self.assertTrue(all(tool.state != CLEAR for tool in message.tools), message)

@@ -339,6 +339,8 @@ class Dvrk(unittest.TestCase):
                 wait_until(lambda: reader.received + reader.rejected > count, "the pose")
 
             say()
+            self.assertTrue(reader.fresh, "an arm that never says its state")
+            reader.require_state = True
             self.assertIn("state is not known", reader.unknown_reason)
             state.publish(word)
             wait_until(lambda reader=reader: reader.state, "the state")
