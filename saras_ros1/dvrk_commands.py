@@ -13,6 +13,8 @@ from crtk_msgs.srv import (
     QueryForwardKinematicsResponse,
     QueryInverseKinematics,
     QueryInverseKinematicsResponse,
+    TriggerOperatingState,
+    TriggerOperatingStateResponse,
 )
 from geometry_msgs.msg import (
     Point,
@@ -25,11 +27,12 @@ from geometry_msgs.msg import (
     WrenchStamped,
 )
 from sensor_msgs.msg import JointState
-from std_msgs.msg import Empty, Header, String
+from std_msgs.msg import Bool, Empty, Header, String
 
 from saras import Error
 from saras.crtk import SimulatedCrtkArm
 from saras_ros1 import convert
+from saras_ros1.dvrk_settings import Settings
 
 # Before CRTK: topic under /dvrk/<arm>/ → command. Poses came as Pose, PoseStamped or TransformStamped.
 OLD_COMMANDS = {
@@ -92,6 +95,9 @@ class Commands:
             for prefix in self._prefixes[1:]
             for name in ("current_state", "desired_state")
         ]
+        self._goal_reached = [
+            rospy.Publisher(prefix + "goal_reached", Bool, queue_size=20) for prefix in self._prefixes
+        ]
         self._texts = {
             level: [rospy.Publisher(prefix + level, String, queue_size=20, latch=False) for prefix in self._prefixes]
             for level in LOG
@@ -116,7 +122,10 @@ class Commands:
             self._jaw(new + "jaw/servo_jf", "servo_jf")
         if old_names:
             self._listen_to_old_names(self._prefixes[1])
+        Settings(arm, self._subscribe)
         rospy.Service(new + "forward_kinematics", QueryForwardKinematics, self._forward)
+        rospy.Service(new + "local/forward_kinematics", QueryForwardKinematics, self._local_forward)
+        rospy.Service(new + "operating_state", TriggerOperatingState, self._tell_state)
         rospy.Service(new + "inverse_kinematics", QueryInverseKinematics, self._inverse)
 
     def _listen_to_old_names(self, prefix: str) -> None:
@@ -176,6 +185,9 @@ class Commands:
 
     def publish_events(self) -> None:
         """What has changed or gone wrong since the last call. Called under the lock."""
+        for reached in self.arm.take_ends():
+            for publisher in self._goal_reached:
+                publisher.publish(Bool(reached))
         for state, homed, busy in self.arm.take_states():
             header = Header(stamp=rospy.Time.now())
             self._operating_state.publish(OperatingState(header, state, homed, busy))
@@ -186,13 +198,26 @@ class Commands:
             for publisher in self._texts[level]:
                 publisher.publish(String(text))
 
-    # ---- services, in the frame of measured_cp
+    # ---- services, in the frame of measured_cp, local/ in that of the remote centre
+
+    def _tell_state(self, _: Any) -> TriggerOperatingStateResponse:
+        with self._lock:
+            machine = self.arm.machine
+            header = Header(stamp=rospy.Time.now())
+            state = OperatingState(header, machine.state, machine.is_homed, machine.is_busy)
+        return TriggerOperatingStateResponse(state)
 
     def _forward(self, request: Any) -> QueryForwardKinematicsResponse:
+        return self._pose_response(request, self.arm.forward)
+
+    def _local_forward(self, request: Any) -> QueryForwardKinematicsResponse:
+        return self._pose_response(request, self.arm.kinematics.forward)
+
+    def _pose_response(self, request: Any, forward: Callable[[Any], Any]) -> QueryForwardKinematicsResponse:
         response = QueryForwardKinematicsResponse()
         try:
             with self._lock:
-                pose = self.arm.forward(_joints(request.jp, self.arm))
+                pose = forward(_joints(request.jp, self.arm))
         except (ValueError, Error) as error:
             response.message, response.cp.orientation.w = str(error), 1.0
             return response

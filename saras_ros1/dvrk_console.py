@@ -7,10 +7,12 @@ from typing import Any
 import rospy
 from diagnostic_msgs.msg import KeyValue
 from sensor_msgs.msg import Joy
-from std_msgs.msg import Bool, Float64, Header
+from std_msgs.msg import Bool, Empty, Float64, Header
 
 CONSOLE = ("camera", "clutch", "operator_present")
 PEDALS = ("clutch", "camera", "cam_minus", "cam_plus", "bicoag", "coag")
+# What switches all arms at once → their state command; below console/, in the newest dVRK below system/.
+POWER = {"power_on": "enable", "power_off": "disable", "home": "home"}
 BUTTON_STATES = (0, 1, 2)  # released, pressed, quick tap
 
 
@@ -37,6 +39,9 @@ class Console:
             rospy.Subscriber(p + "console/teleop/set_scale", Float64, self._on_scale)
             for name in ("console/teleop/select_teleop", "teleop/select", "console/teleop/select"):
                 rospy.Subscriber(p + name, KeyValue, lambda m: self._tell(self._selected, m))
+            for name, command in POWER.items():
+                for place in ("console/", "system/"):
+                    rospy.Subscriber(p + place + name, Empty, lambda _, command=command: node.command_all(command))
         # Someone must be able to press the pedals: key clutch, value 0, 1 or 2.
         rospy.Subscriber(f"{node.name}/press", KeyValue, self._on_press)
         for name in self._buttons:

@@ -117,6 +117,13 @@ class DvrkSim(Node):
         self.console.press("console/operator_present", 1 if self.enabled else 0)
         self.every(1.0 / rate_hz, self.tick)
 
+    def command_all(self, text: str) -> None:
+        """A state command for all arms, as the console has for powering and homing."""
+        with self.lock:
+            for arm in self.arms.values():
+                arm.commands.state_command(text)
+                arm.commands.publish_events()
+
     def _load_bag(self, path: str) -> None:
         if not path:
             return

@@ -90,6 +90,22 @@ class _Topic:
         raise RuntimeWarning("unable to get data")
 
 
+class _State(_Topic):
+    """The operating state, and when it last said busy. A state that is not younger than the one before is dropped."""
+
+    def __init__(self, ral):
+        self.busy_time = rospy.Time.now()
+        super().__init__(ral, "operating_state", crtk_msgs.msg.OperatingState)
+
+    def _on_message(self, message):
+        stamp = message.header.stamp
+        if message.is_busy:
+            self.busy_time = max(self.busy_time, stamp)
+        if stamp > self.data.header.stamp:
+            self.data = message
+        self.event.set()
+
+
 class Utils:
     """Adds CRTK methods to class_instance."""
 
@@ -97,30 +113,32 @@ class Utils:
         self._to, self._ral, self._interval = class_instance, ral, expected_interval
 
     def add_operating_state(self):
-        topic = _Topic(self._ral, "operating_state", crtk_msgs.msg.OperatingState)
+        topic = _State(self._ral)
         commands = self._ral.publisher("state_command", crtk_msgs.msg.StringStamped, latch=True)
 
         def wait_until(true, timeout):
             end = time.monotonic() + timeout
-            while not true():
+            while True:
                 topic.event.clear()
+                if true():
+                    return True
                 left = end - time.monotonic()
                 if left <= 0.0 or not topic.event.wait(left):
                     return true()
-            return True
 
         def state_command(text):
             topic.event.clear()
             commands.publish(crtk_msgs.msg.StringStamped(string=text))
 
         def wait_for_busy(is_busy=False, start_time=None, timeout=30.0):
-            # Only a state that is younger than the command counts at once; else the next one that says so.
-            if start_time is not None:
-                return wait_until(
-                    lambda: topic.data.header.stamp > start_time and topic.data.is_busy == is_busy, timeout
-                )
-            topic.event.clear()
-            return topic.event.wait(timeout) and wait_until(lambda: topic.data.is_busy == is_busy, timeout)
+            # As since 1.2: the device must have said busy after the command, even if it was busy before.
+            start = start_time or rospy.Time.now()
+
+            def reached():
+                was_busy = topic.busy_time > start
+                return was_busy if is_busy else was_busy and not topic.data.is_busy
+
+            return wait_until(reached, timeout)
 
         def go(text, state, timeout):
             state_command(text)
@@ -218,6 +236,14 @@ class Utils:
     def add_move_cp(self):
         self._add_pose_command("move_cp", waits=True)
 
+    def add_measured_cf(self):
+        topic = _Topic(self._ral, "measured_cf", geometry_msgs.msg.WrenchStamped)
+        self._to.measured_cf = lambda age=None, wait=None: topic.valid(self._interval, age, wait).wrench
+
+    def add_servo_cf(self):
+        publisher = self._ral.publisher("servo_cf", geometry_msgs.msg.WrenchStamped)
+        self._to.servo_cf = lambda wrench: publisher.publish(geometry_msgs.msg.WrenchStamped(wrench=wrench))
+
     def add_forward_kinematics(self):
         service = self._ral.service("forward_kinematics", crtk_msgs.srv.QueryForwardKinematics)
 
@@ -247,3 +273,39 @@ class Arm:
         utils = Utils(self, self.ral, expected_interval)
         for add in [getattr(utils, name) for name in dir(utils) if name.startswith("add_")]:
             add()
+
+
+class DvrkArm(Arm):
+    """The same with what dvrk_python expects of a dVRK beside CRTK; jaw: as its PSMs have."""
+
+    def __init__(self, name, expected_interval=0.02, *, jaw=True):
+        super().__init__(name, expected_interval)
+        self.rals = [self.ral]
+        self.local = self._part(name, "local", ("measured_cp", "setpoint_cp", "forward_kinematics"), expected_interval)
+        for space in ("body", "spatial"):
+            setattr(self, space, self._part(name, space, ("measured_cf", "servo_cf", "jacobian"), expected_interval))
+        switches = ["body/set_cf_orientation_absolute", "use_gravity_compensation"]
+        if jaw:
+            parts = ("measured_js", "setpoint_js", "servo_jp", "move_jp")
+            self.jaw = self._part(name, "jaw", parts, expected_interval)
+            self.jaw.wait_for_busy = self.wait_for_busy
+            switches.append("emulate_tool_present")
+        self.switches = {topic: self.ral.publisher(topic, std_msgs.msg.Bool, latch=True) for topic in switches}
+        self.ratio = None
+        self.ral.subscriber("trajectory_j/ratio", std_msgs.msg.Float64, lambda m: setattr(self, "ratio", m.data))
+        self._set_ratio = self.ral.publisher("trajectory_j/set_ratio", std_msgs.msg.Float64, latch=True)
+
+    def _part(self, name, space, adds, expected_interval):
+        part = type("Part", (), {})()
+        self.rals.append(Ral(f"{name}/{space}"))
+        utils = Utils(part, self.rals[-1], expected_interval)
+        for add in adds:
+            getattr(utils, f"add_{add}")()
+        return part
+
+    def check_connections(self, timeout_seconds=10.0):
+        for ral in self.rals:
+            ral.check_connections(timeout_seconds)
+
+    def trajectory_j_set_ratio(self, ratio):
+        self._set_ratio.publish(ratio)

@@ -87,6 +87,45 @@ def test_disabling_stops_a_move_where_it_is():
     assert arm.take_states() == [("ENABLED", True, False), ("ENABLED", True, True), ("DISABLED", True, False)]
 
 
+def test_each_move_says_busy_anew_and_its_end_whether_it_got_there():
+    arm = psm()
+    arm.take_states()
+    up, down = ("ENABLED", True, True), ("ENABLED", True, False)
+    assert arm.command("move_jp", START + 0.01)
+    assert arm.command("move_jp", START)  # a client waits for a busy state that is younger than its command
+    assert arm.jaw_command("move_jp", [0.5])
+    assert arm.take_states() == [up, up, up]
+    run(arm, 2.0)
+    assert (arm.take_states(), arm.take_ends()) == ([down], [True])
+    for end in (lambda: arm.command("servo_jp", START), lambda: arm.state_command("disable")):
+        assert arm.command("move_jp", START + 0.01)
+        assert end()
+        assert arm.take_ends() == [False]
+
+
+def test_ratios_slow_moves_but_not_the_surgeon():
+    def duration_s(arm, goal):
+        assert arm.command("move_jp", goal)
+        begin = arm.time_s
+        while arm.machine.is_busy:
+            arm.step(DT)
+        return arm.time_s - begin
+
+    arm, away = psm(), START + np.array([0.5, 0, 0, 0, 0, 0])
+    full = duration_s(arm, away)
+    assert arm.set_ratio(0.25)
+    assert duration_s(arm, START) > 2.0 * full  # at least by the root of the ratio
+    arm.follow(away)
+    run(arm, full + 0.1)
+    np.testing.assert_allclose(arm.joints.q, away, atol=1e-9)
+    assert arm.set_ratio(1.0, acceleration=False)
+    assert arm.ratios == (1.0, 0.25)
+    for wrong in (0.0, -1.0, 1.01, np.nan):
+        assert not arm.set_ratio(wrong)
+        assert "must be in (0, 1]" in arm.take_events()[-1][1]
+    assert arm.ratios == (1.0, 0.25)
+
+
 def test_busy_goes_up_and_down_even_for_a_move_to_where_it_is():
     arm = psm()
     arm.take_states()

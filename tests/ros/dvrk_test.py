@@ -10,6 +10,7 @@ import sys
 import unittest
 import xmlrpc.client
 
+import crtk_msgs.srv
 import numpy as np
 import PyKDL
 import rosgraph
@@ -19,7 +20,7 @@ import tf2_ros
 from diagnostic_msgs.msg import KeyValue
 from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion, TransformStamped, TwistStamped, WrenchStamped
 from sensor_msgs.msg import JointState, Joy
-from std_msgs.msg import Bool, Float64, String
+from std_msgs.msg import Bool, Empty, Float64, String
 from support import ROOT, Newest, wait_until
 
 from saras.kinematics import dvrk, scene
@@ -27,7 +28,7 @@ from saras_ros1 import convert
 from saras_ros1.dvrk_inputs import DvrkArmInput
 
 sys.path.insert(0, str(ROOT / "tests"))
-from fakes.crtk_client import Arm, Ral, Utils
+from fakes.crtk_client import Arm, DvrkArm
 
 PATIENT_S = 2.0  # a busy machine is no fault: the client's interval here
 START = np.array([0.1, 0.05, 0.1, 0.3, 0.2, -0.1])
@@ -194,15 +195,70 @@ class Dvrk(unittest.TestCase):
         np.testing.assert_allclose(matrix(ecm.measured_cp(age=0.0, wait=PATIENT_S)), dvrk.ecm().forward(q), atol=1e-9)
 
     def test_a9_the_jaw_waits_on_the_arms_state(self) -> None:
-        jaw = type("Jaw", (), {"wait_for_busy": staticmethod(self.arm.wait_for_busy)})()
-        ral = Ral("PSM1/jaw")
-        utils = Utils(jaw, ral, PATIENT_S)
-        utils.add_measured_js()
-        utils.add_move_jp()
-        ral.check_connections(30.0)
+        jaw = self.dvrk_psm().jaw
         for angle in (0.8, 0.8, 0.0):
             self.assertTrue(jaw.move_jp(np.array([angle])).wait())
             np.testing.assert_allclose(jaw.measured_jp(age=0.0, wait=PATIENT_S), [angle], atol=1e-9)
+
+    def dvrk_psm(self) -> DvrkArm:
+        """As dvrk_python makes it: it will not start when one of its topics has no peer."""
+        psm = DvrkArm("PSM1", PATIENT_S)
+        psm.check_connections(30.0)
+        wait_until(lambda: psm.operating_state() == "ENABLED", "its state")
+        return psm
+
+    def test_b0_a_move_that_begins_while_busy_is_waited_for_too(self) -> None:
+        arm = self.dvrk_psm()
+        reached = Newest("/PSM1/goal_reached", Bool)
+        wait_until(lambda: reached.subscriber.get_num_connections(), "goal_reached")
+        self.go_to(START)
+        wait_until(lambda: reached.message, "the goal reached")
+        self.assertTrue(reached.message.data)
+        away = START + np.array([0.4, 0, 0, 0, 0, 0])
+        self.assertTrue(arm.move_jp(away).wait(is_busy=True))
+        self.assertTrue(arm.move_jp(START).wait())  # a goal that changes on the way
+        np.testing.assert_allclose(arm.measured_jp(age=0.0, wait=PATIENT_S), START, atol=1e-9)
+        for opening, insertion in ((0.9, 0.12), (0.0, 0.1)):  # jaw and arm together
+            self.assertTrue(arm.jaw.move_jp(np.array([opening])).wait(is_busy=True))
+            goal = START.copy()
+            goal[2] = insertion
+            self.assertTrue(arm.move_jp(goal).wait())
+            np.testing.assert_allclose(arm.jaw.measured_jp(age=0.0, wait=PATIENT_S), [opening], atol=1e-9)
+        handle = arm.move_jp(away)
+        self.assertTrue(handle.wait(is_busy=True))
+        arm.servo_jp(START)
+        self.assertTrue(handle.wait())
+        wait_until(lambda: not reached.message.data, "the goal not reached")
+
+    def test_b5_what_dvrk_python_expects_beside_crtk(self) -> None:
+        arm = self.dvrk_psm()
+        wait_until(lambda: arm.ratio == 1.0, "the ratio at the start")
+        arm.trajectory_j_set_ratio(0.25)
+        wait_until(lambda: arm.ratio == 0.25, "the ratio")
+        self.errors.clear()
+        arm.trajectory_j_set_ratio(1.5)
+        self.refused("ratio = 1.5", "must be in (0, 1]")
+        self.assertEqual(arm.ratio, 0.25)
+        arm.trajectory_j_set_ratio(1.0)
+        wait_until(lambda: arm.ratio == 1.0, "the ratio as it was")
+        for switch in arm.switches.values():
+            switch.publish(True)
+        frame, result, message = arm.local.forward_kinematics(START)
+        self.assertTrue(result, message)
+        np.testing.assert_allclose(matrix(frame), dvrk.psm().forward(START), atol=1e-9)
+        state = rospy.ServiceProxy("/PSM1/operating_state", crtk_msgs.srv.TriggerOperatingState)().operating_state
+        self.assertEqual((state.state, state.is_homed, state.is_busy), ("ENABLED", True, False))
+        DvrkArm("ECM", PATIENT_S, jaw=False).check_connections(30.0)
+
+    def test_b6_the_console_powers_all_arms(self) -> None:
+        for place in ("console", "system"):
+            off, home = (rospy.Publisher(f"/{place}/{n}", Empty, queue_size=1) for n in ("power_off", "home"))
+            for publisher in (off, home):
+                wait_until(publisher.get_num_connections, publisher.name)
+            off.publish()
+            self.assertTrue(self.arm.wait_for_operating_state("DISABLED", 10.0))
+            home.publish()
+            self.assertTrue(self.arm.wait_for_operating_state("ENABLED", 10.0))
 
     # ---- names before CRTK, console, frames
 

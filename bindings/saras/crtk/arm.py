@@ -53,6 +53,8 @@ class SimulatedCrtkArm:
         self.machine = machine or StateMachine()
         self.reference_T_base: Array = np.eye(4)
         self.joints = PointToPoint(q, limits.speed, limits.acceleration)
+        self.ratios = (1.0, 1.0)
+        """Shares of the bounds of speed and acceleration that moves keep."""
         self.effort: Array = np.zeros(len(self.joints.q))
         self.wrench: Array = np.zeros(6)
         self.jaw_limits = jaw
@@ -67,6 +69,7 @@ class SimulatedCrtkArm:
         self._interpolating = 0.0
         self._events: list[tuple[str, str]] = []
         self._states = [self._state()]
+        self._ends: list[bool] = []
         self._clipped = ""
         self._moves = self._jaw_moves = False
 
@@ -82,18 +85,26 @@ class SimulatedCrtkArm:
         return events
 
     def take_states(self) -> list[tuple[str, bool, bool]]:
-        """(state, is_homed, is_busy) since the last call, each change once and in order."""
+        """(state, is_homed, is_busy) since the last call, in order: each change, and busy anew for each move."""
         states, self._states = self._states, []
         return states
+
+    def take_ends(self) -> list[bool]:
+        """Moves that ended since the last call: whether the goal was reached."""
+        ends, self._ends = self._ends, []
+        return ends
 
     # ---- what it obeys
 
     def state_command(self, text: str) -> bool:
         """enable, disable, pause, resume, home, unhome; False when the table refuses it."""
+        was_busy = self.machine.is_busy
         try:
             self.machine.command(text)
         except ValueError as error:
             return self.refuse(str(error))
+        if was_busy and not self.machine.is_busy:
+            self._ends.append(False)
         if not self.machine.ready:
             self.stop()
         self._changed()
@@ -139,6 +150,16 @@ class SimulatedCrtkArm:
             return self.refuse(f"jaw/{name} refused: {error}")
         return True
 
+    def set_ratio(self, value: float, *, speed: bool = True, acceleration: bool = True) -> bool:
+        """Share of the bounds, (0, 1], that moves keep which begin from now on; of one of them or of both."""
+        if not 0.0 < value <= 1.0:
+            return self.refuse(f"trajectory ratio = {value:g} refused: must be in (0, 1]")
+        self.ratios = (value if speed else self.ratios[0], value if acceleration else self.ratios[1])
+        for motion in (self.joints, self.jaw):
+            if motion is not None:
+                motion.set_ratios(*self.ratios)
+        return True
+
     def follow(self, q: npt.ArrayLike) -> None:
         """Towards a goal that moves on: what the scripted surgeon does. Clipped to the limits, never busy."""
         if self.machine.ready:
@@ -160,7 +181,7 @@ class SimulatedCrtkArm:
         if self.jaw is not None:
             self.jaw.step(dt)
             if self._jaw_moves and self.jaw.arrived:
-                self._busy(jaw=False)
+                self._busy(jaw=False, reached=True)
         if self._rates is not None:
             if self.time_s > self._rates_until_s:
                 self.stop()
@@ -175,7 +196,7 @@ class SimulatedCrtkArm:
             return
         self.joints.step(dt)
         if self._moves and self.joints.arrived:
-            self._busy(arm=False)
+            self._busy(arm=False, reached=True)
 
     # ---- commands by name
 
@@ -270,12 +291,17 @@ class SimulatedCrtkArm:
     def _state(self) -> tuple[str, bool, bool]:
         return self.machine.state, self.machine.is_homed, self.machine.is_busy
 
-    def _busy(self, *, arm: bool | None = None, jaw: bool | None = None) -> None:
-        """What moves by a move command now; the arm is busy while its joints or its jaw do."""
+    def _busy(self, *, arm: bool | None = None, jaw: bool | None = None, reached: bool = False) -> None:
+        """What moves by a move command now; the arm is busy while its joints or its jaw do.
+
+        As in the dVRK each move that begins says busy anew: a client waits for a busy state younger than its command.
+        """
         self._moves = self._moves if arm is None else arm
         self._jaw_moves = self._jaw_moves if jaw is None else jaw
         busy = self._moves or self._jaw_moves
-        if self.machine.is_busy != busy:
+        if self.machine.is_busy and not busy:
+            self._ends.append(reached)
+        if self.machine.is_busy != busy or arm or jaw:
             self.machine.is_busy = busy
             self._changed()
 

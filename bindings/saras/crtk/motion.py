@@ -20,8 +20,9 @@ class PointToPoint:
         self.q: Array = np.array(q, dtype=float)
         self.v: Array = np.zeros_like(self.q)
         self.goal: Array = self.q.copy()
-        self._speed_bound: Array = np.array(speed, dtype=float)
-        self._acceleration_bound: Array = np.array(acceleration, dtype=float)
+        self._full_speed: Array = np.array(speed, dtype=float)
+        self._full_acceleration: Array = np.array(acceleration, dtype=float)
+        self._speed_bound, self._acceleration_bound = self._full_speed, self._full_acceleration
         self._speed, self._acceleration = self._speed_bound, self._acceleration_bound
 
     @property
@@ -39,10 +40,14 @@ class PointToPoint:
             self._speed = distance * float((self._speed_bound[moving] / distance[moving]).min())
             self._acceleration = distance * float((self._acceleration_bound[moving] / distance[moving]).min())
 
+    def set_ratios(self, speed: float, acceleration: float) -> None:
+        """Shares of the bounds, (0, 1], that goals of go() keep from now on."""
+        self._speed_bound, self._acceleration_bound = speed * self._full_speed, acceleration * self._full_acceleration
+
     def follow(self, goal: npt.ArrayLike) -> None:
-        """The same for a goal that moves on with each step: full bounds for all joints."""
+        """The same for a goal that moves on with each step: full bounds for all joints, whatever the ratios."""
         self.goal = np.array(goal, dtype=float)
-        self._speed, self._acceleration = self._speed_bound, self._acceleration_bound
+        self._speed, self._acceleration = self._full_speed, self._full_acceleration
 
     def put(self, q: npt.ArrayLike) -> None:
         """Stands at q (n,) at once."""
