@@ -1,7 +1,10 @@
+#include <algorithm>
+
 #include "law.hpp"
 #include "rooms.hpp"
 #include "saras/net/crc32.hpp"
 #include "saras/net/link_age.hpp"
+#include "saras/net/replay_window.hpp"
 #include "saras/net/sequence_filter.hpp"
 #include "saras/net/touchball_packet.hpp"
 
@@ -26,6 +29,28 @@ auto decode_buffer(const py::buffer& data, Decode decode) {
   const py::buffer_info info = data.request();
   return decode(static_cast<const std::uint8_t*>(info.ptr), static_cast<std::size_t>(info.size * info.itemsize));
 }
+
+Authentication authentication(bool authenticated) {
+  return authenticated ? Authentication::kTag : Authentication::kNone;
+}
+
+template <typename Packet>
+auto frame_checker() {
+  return [](const py::buffer& data, bool authenticated) {
+    const PacketFault fault = decode_buffer(data, [&](const std::uint8_t* bytes, std::size_t size) {
+      return check_frame<Packet>(bytes, size, authentication(authenticated));
+    });
+    if (fault) {
+      throw ProtocolError(to_string(fault));
+    }
+  };
+}
+
+constexpr const char* kCheckFrameDoc =
+    "Length, magic, version, and a tag or none as wanted: what is checked before the tag. Raises ProtocolError.";
+constexpr const char* kEncodeDoc = "Bytes; raises ProtocolError. An authenticated datagram is whole only after seal().";
+constexpr const char* kDecodeDoc =
+    "Strict; raises ProtocolError naming field and value. The tag is the caller's to check, before.";
 
 void bind_parts(py::module_& m) {
   py::enum_<ChannelState>(m, "ChannelState", "Whether one side teleoperates. Same numbers as saras_ros1/ChannelState.")
@@ -88,10 +113,21 @@ void bind_up(py::module_& m) {
   nested(packet, "right", &TouchballUp::right, "TouchballUpSide");
   packet.cls()
       .def(
-          "encode", [](const TouchballUp& self) { return to_bytes(encode(self)); }, "Bytes; raises ProtocolError.")
+          "encode",
+          [](const TouchballUp& self, bool authenticated) {
+            return to_bytes(encode(self, authentication(authenticated)));
+          },
+          py::arg("authenticated") = false, kEncodeDoc)
+      .def_static("check_frame", frame_checker<TouchballUp>(), py::arg("data"), py::arg("authenticated"),
+                  kCheckFrameDoc)
       .def_static(
-          "decode", [](const py::buffer& data) { return decode_buffer(data, decode_up); }, py::arg("data"),
-          "Strict; raises ProtocolError naming field and value.")
+          "decode",
+          [](const py::buffer& data, bool authenticated) {
+            return decode_buffer(data, [&](const std::uint8_t* bytes, std::size_t size) {
+              return decode_up(bytes, size, authentication(authenticated));
+            });
+          },
+          py::arg("data"), py::arg("authenticated") = false, kDecodeDoc)
       .def_readonly_static("SIZE", &kTouchballUpSize);
 }
 
@@ -114,11 +150,80 @@ void bind_down(py::module_& m) {
   nested(packet, "right", &TouchballDown::right, "TouchballDownSide");
   packet.cls()
       .def(
-          "encode", [](const TouchballDown& self) { return to_bytes(encode(self)); }, "Bytes; raises ProtocolError.")
+          "encode",
+          [](const TouchballDown& self, bool authenticated) {
+            return to_bytes(encode(self, authentication(authenticated)));
+          },
+          py::arg("authenticated") = false, kEncodeDoc)
+      .def_static("check_frame", frame_checker<TouchballDown>(), py::arg("data"), py::arg("authenticated"),
+                  kCheckFrameDoc)
       .def_static(
-          "decode", [](const py::buffer& data) { return decode_buffer(data, decode_down); }, py::arg("data"),
-          "Strict; raises ProtocolError naming field and value.")
+          "decode",
+          [](const py::buffer& data, bool authenticated) {
+            return decode_buffer(data, [&](const std::uint8_t* bytes, std::size_t size) {
+              return decode_down(bytes, size, authentication(authenticated));
+            });
+          },
+          py::arg("data"), py::arg("authenticated") = false, kDecodeDoc)
       .def_readonly_static("SIZE", &kTouchballDownSize);
+}
+
+/// A nonce as bytes on the Python side.
+using Nonce = std::array<std::uint8_t, 16>;
+
+Nonce to_nonce(const py::bytes& value) {
+  const std::string text = value;
+  Nonce nonce;
+  if (text.size() != nonce.size()) {
+    throw ProtocolError("nonce: " + std::to_string(text.size()) + " bytes: must be 16");
+  }
+  std::copy(text.begin(), text.end(), nonce.begin());
+  return nonce;
+}
+
+void bind_handshake(py::module_& m) {
+  Struct<TouchballHandshake> packet(m, "TouchballHandshake", "Message that begins an authenticated session.");
+  packet
+      .field(
+          "nonce", [](TouchballHandshake& self) { return to_bytes(self.nonce); },
+          [](TouchballHandshake& self, const py::bytes& value) { self.nonce = to_nonce(value); },
+          "(16 bytes) drawn by the sender")
+      .field(
+          "echo", [](TouchballHandshake& self) { return to_bytes(self.echo); },
+          [](TouchballHandshake& self, const py::bytes& value) { self.echo = to_nonce(value); },
+          "(16 bytes) the receiver's own nonce, as the sender heard it; 0: none");
+  packet.cls()
+      .def(
+          "encode",
+          [](const TouchballHandshake& self) {
+            TouchballHandshakeBytes bytes;
+            encode(self, bytes);
+            return to_bytes(bytes);
+          },
+          "Bytes, whole only after seal().")
+      .def_static("check_frame", frame_checker<TouchballHandshake>(), py::arg("data"), py::arg("authenticated") = true,
+                  kCheckFrameDoc)
+      .def_static(
+          "decode", [](const py::buffer& data) { return decode_buffer(data, decode_handshake); }, py::arg("data"),
+          kDecodeDoc)
+      .def_readonly_static("SIZE", &kTouchballHandshakeSize);
+  m.def(
+      "seal",
+      [](const py::bytes& data, const py::bytes& tag) {
+        std::string bytes = data;
+        const std::string value = tag;
+        if (bytes.size() < kTouchballTrailerSize || value.size() != kTouchballTagSize) {
+          throw ProtocolError("seal: " + std::to_string(bytes.size()) + " bytes with a tag of " +
+                              std::to_string(value.size()) + ": must be at least 20 and 16");
+        }
+        seal(reinterpret_cast<std::uint8_t*>(bytes.data()), bytes.size(),
+             reinterpret_cast<const std::uint8_t*>(value.data()));
+        return py::bytes(bytes);
+      },
+      py::arg("data"), py::arg("tag"),
+      "An encoded datagram with its tag (16 bytes) and checksum at the end. The tag is that of data[:-TRAILER_SIZE].");
+  m.attr("TAG_SIZE") = kTouchballTagSize;
+  m.attr("TRAILER_SIZE") = kTouchballTrailerSize;
 }
 
 void bind_stream(py::module_& m) {
@@ -132,9 +237,24 @@ void bind_stream(py::module_& m) {
   py::class_<SequenceFilter>(m, "SequenceFilter", "Newest-wins filter: nothing is delivered backwards or twice.")
       .def(py::init<>())
       .def("accept", &SequenceFilter::accept, py::arg("session"), py::arg("seq"), "True when strictly newer.")
+      .def("restart", &SequenceFilter::restart, "A handshake began a new session: the next datagram is newest.")
       .def_property_readonly("counts", [](const SequenceFilter& self) { return self.counts(); })
       .def_property_readonly("session", &SequenceFilter::session)
       .def_property_readonly("seq", &SequenceFilter::seq);
+  py::enum_<ReplayVerdict>(m, "ReplayVerdict", "What a ReplayWindow says to a sequence number.")
+      .value("NEW", ReplayVerdict::kNew)
+      .value("REPLAYED", ReplayVerdict::kReplayed)
+      .value("TOO_OLD", ReplayVerdict::kTooOld)
+      .value("FAR_AHEAD", ReplayVerdict::kFarAhead);
+  py::class_<ReplayWindow>(m, "ReplayWindow", "Newest 64 sequence numbers of an authenticated session (RFC 6479).")
+      .def(py::init<>())
+      .def("accept", &ReplayWindow::accept, py::arg("seq"),
+           "ReplayVerdict; notes seq when NEW, else changes nothing. For authenticated datagrams only.")
+      .def("reset", &ReplayWindow::reset, "For a new session.")
+      .def_property_readonly("newest", &ReplayWindow::newest)
+      .def_property_readonly_static("SIZE", [](const py::object&) { return std::uint64_t{ReplayWindow::kSize}; })
+      .def_property_readonly_static("MOST_AHEAD",
+                                    [](const py::object&) { return std::uint64_t{ReplayWindow::kMostAhead}; });
   py::class_<LinkAge>(m, "LinkAge", "Age of received information above the link's least delay.")
       .def(py::init([](double rise_rate) { return LinkAge({rise_rate}); }),
            py::arg("rise_rate") = LinkAgeConfig{}.rise_rate)
@@ -151,6 +271,7 @@ void bind_net(py::module_& m) {
   bind_parts(m);
   bind_up(m);
   bind_down(m);
+  bind_handshake(m);
   bind_stream(m);
   m.def(
       "crc32", [](const py::buffer& data) { return decode_buffer(data, crc32); }, py::arg("data"),

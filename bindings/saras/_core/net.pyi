@@ -14,14 +14,20 @@ __all__: list[str] = [
     "GuardState",
     "LinkAge",
     "PortLedger",
+    "ReplayVerdict",
+    "ReplayWindow",
     "SequenceCounts",
     "SequenceFilter",
     "SimballJoints",
+    "TAG_SIZE",
+    "TRAILER_SIZE",
     "TouchballDown",
     "TouchballDownSide",
+    "TouchballHandshake",
     "TouchballUp",
     "TouchballUpSide",
     "crc32",
+    "seal",
 ]
 
 class ChannelState:
@@ -404,9 +410,14 @@ class TouchballUp:
     SIZE: typing.ClassVar[int] = 580
     _fields: typing.ClassVar[list] = ["session", "seq", "sender_time_ns", "left", "right"]
     @staticmethod
-    def decode(data: typing_extensions.Buffer) -> TouchballUp:
+    def check_frame(data: typing_extensions.Buffer, authenticated: bool) -> None:
         """
-        Strict; raises ProtocolError naming field and value.
+        Length, magic, version, and a tag or none as wanted: what is checked before the tag. Raises ProtocolError.
+        """
+    @staticmethod
+    def decode(data: typing_extensions.Buffer, authenticated: bool = False) -> TouchballUp:
+        """
+        Strict; raises ProtocolError naming field and value. The tag is the caller's to check, before.
         """
     def __copy__(self) -> TouchballUp: ...
     def __deepcopy__(self, arg0: dict) -> TouchballUp: ...
@@ -419,9 +430,9 @@ class TouchballUp:
         """
         All numbers in field order, as saras.law_trace records them.
         """
-    def encode(self) -> bytes:
+    def encode(self, authenticated: bool = False) -> bytes:
         """
-        Bytes; raises ProtocolError.
+        Bytes; raises ProtocolError. An authenticated datagram is whole only after seal().
         """
     @property
     def left(self) -> TouchballUpSide:
@@ -523,9 +534,14 @@ class TouchballDown:
         "right",
     ]
     @staticmethod
-    def decode(data: typing_extensions.Buffer) -> TouchballDown:
+    def check_frame(data: typing_extensions.Buffer, authenticated: bool) -> None:
         """
-        Strict; raises ProtocolError naming field and value.
+        Length, magic, version, and a tag or none as wanted: what is checked before the tag. Raises ProtocolError.
+        """
+    @staticmethod
+    def decode(data: typing_extensions.Buffer, authenticated: bool = False) -> TouchballDown:
+        """
+        Strict; raises ProtocolError naming field and value. The tag is the caller's to check, before.
         """
     def __copy__(self) -> TouchballDown: ...
     def __deepcopy__(self, arg0: dict) -> TouchballDown: ...
@@ -538,9 +554,9 @@ class TouchballDown:
         """
         All numbers in field order, as saras.law_trace records them.
         """
-    def encode(self) -> bytes:
+    def encode(self, authenticated: bool = False) -> bytes:
         """
-        Bytes; raises ProtocolError.
+        Bytes; raises ProtocolError. An authenticated datagram is whole only after seal().
         """
     @property
     def echo_hold_ns(self) -> int:
@@ -605,6 +621,53 @@ class TouchballDown:
         """
     @session.setter
     def session(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+
+class TouchballHandshake:
+    """
+    Message that begins an authenticated session.
+    """
+
+    SIZE: typing.ClassVar[int] = 60
+    _fields: typing.ClassVar[list] = ["nonce", "echo"]
+    @staticmethod
+    def check_frame(data: typing_extensions.Buffer, authenticated: bool = True) -> None:
+        """
+        Length, magic, version, and a tag or none as wanted: what is checked before the tag. Raises ProtocolError.
+        """
+    @staticmethod
+    def decode(data: typing_extensions.Buffer) -> TouchballHandshake:
+        """
+        Strict; raises ProtocolError naming field and value. The tag is the caller's to check, before.
+        """
+    def __copy__(self) -> TouchballHandshake: ...
+    def __deepcopy__(self, arg0: dict) -> TouchballHandshake: ...
+    def __init__(self, **kwargs) -> None:
+        """
+        Message that begins an authenticated session.
+        """
+    def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
+    def encode(self) -> bytes:
+        """
+        Bytes, whole only after seal().
+        """
+    @property
+    def echo(self) -> bytes:
+        """
+        (16 bytes) the receiver's own nonce, as the sender heard it; 0: none
+        """
+    @echo.setter
+    def echo(self, arg1: bytes) -> None: ...
+    @property
+    def nonce(self) -> bytes:
+        """
+        (16 bytes) drawn by the sender
+        """
+    @nonce.setter
+    def nonce(self, arg1: bytes) -> None: ...
 
 class SequenceCounts:
     """
@@ -677,12 +740,76 @@ class SequenceFilter:
         """
         True when strictly newer.
         """
+    def restart(self) -> None:
+        """
+        A handshake began a new session: the next datagram is newest.
+        """
     @property
     def counts(self) -> SequenceCounts: ...
     @property
     def seq(self) -> int: ...
     @property
     def session(self) -> int: ...
+
+class ReplayVerdict:
+    """
+    What a ReplayWindow says to a sequence number.
+
+    Members:
+
+      NEW
+
+      REPLAYED
+
+      TOO_OLD
+
+      FAR_AHEAD
+    """
+
+    FAR_AHEAD: typing.ClassVar[ReplayVerdict]
+    NEW: typing.ClassVar[ReplayVerdict]
+    REPLAYED: typing.ClassVar[ReplayVerdict]
+    TOO_OLD: typing.ClassVar[ReplayVerdict]
+    __members__: typing.ClassVar[dict[str, ReplayVerdict]]
+    @typing.overload
+    def __eq__(self, other: ReplayVerdict) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: ReplayVerdict) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class ReplayWindow:
+    """
+    Newest 64 sequence numbers of an authenticated session (RFC 6479).
+    """
+
+    MOST_AHEAD: typing.ClassVar[int] = 1048576
+    SIZE: typing.ClassVar[int] = 64
+    def __init__(self) -> None: ...
+    def accept(self, seq: typing.SupportsInt | typing.SupportsIndex) -> ReplayVerdict:
+        """
+        ReplayVerdict; notes seq when NEW, else changes nothing. For authenticated datagrams only.
+        """
+    def reset(self) -> None:
+        """
+        For a new session.
+        """
+    @property
+    def newest(self) -> int: ...
 
 class LinkAge:
     """
@@ -708,3 +835,11 @@ def crc32(data: typing_extensions.Buffer) -> int:
     """
     CRC-32 of IEEE 802.3, as zlib.crc32.
     """
+
+def seal(data: bytes, tag: bytes) -> bytes:
+    """
+    An encoded datagram with its tag (16 bytes) and checksum at the end. The tag is that of data[:-TRAILER_SIZE].
+    """
+
+TAG_SIZE: int = 16
+TRAILER_SIZE: int = 20

@@ -34,7 +34,10 @@ std::string to_string(const PacketFault& fault) {
       text << fault.value << ": this program speaks version " << fault.lowest;
       break;
     case PacketError::kAuthenticated:
-      hex(fault.value) << ": the datagram is authenticated, which this version cannot check yet";
+      hex(fault.value) << ": the datagram is authenticated, this end has no key file";
+      break;
+    case PacketError::kUnauthenticated:
+      hex(fault.value) << ": the datagram is not authenticated, give its sender the key file of this end";
       break;
     case PacketError::kReserved:
       hex(fault.value) << ": reserved bits must be 0";

@@ -3,11 +3,12 @@
 namespace saras {
 
 bool SequenceFilter::accept(std::uint64_t session, std::uint64_t seq) noexcept {
-  if (has_seen() && session < session_) {
+  if (!is_new_ && session < session_) {
     ++counts_.old_session;
     return false;
   }
-  if (!has_seen() || session > session_) {
+  if (is_new_ || session > session_) {
+    is_new_ = false;
     session_ = session;
     seq_ = seq;
     received_ = 1;

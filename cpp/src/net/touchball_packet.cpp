@@ -1,5 +1,7 @@
 #include "saras/net/touchball_packet.hpp"
 
+#include <cstring>
+
 #include "saras/net/crc32.hpp"
 #include "saras/spatial/errors.hpp"
 #include "wire.hpp"
@@ -7,10 +9,10 @@
 namespace saras {
 namespace {
 
-constexpr std::uint32_t kUpMagic = 0x55425453;    // "STBU" as bytes
-constexpr std::uint32_t kDownMagic = 0x44425453;  // "STBD" as bytes
+constexpr std::uint32_t kUpMagic = 0x55425453;         // "STBU" as bytes
+constexpr std::uint32_t kDownMagic = 0x44425453;       // "STBD" as bytes
+constexpr std::uint32_t kHandshakeMagic = 0x48425453;  // "STBH" as bytes
 constexpr std::uint16_t kAuthenticatedFlag = 1;
-constexpr std::size_t kAuthenticationSize = 16;
 constexpr std::size_t kChecksumSize = 4;
 constexpr double kPositionLimit_m = 10.0;  // a handle is within arm's reach: refuses millimetres sent as metres
 
@@ -102,17 +104,49 @@ void body(Wire& wire, const TouchballDown& packet) {
 void body(wire::Reader& wire, TouchballUp& packet) { up_body(wire, packet); }
 void body(wire::Reader& wire, TouchballDown& packet) { down_body(wire, packet); }
 
-template <typename Packet, std::size_t size>
-PacketFault encode_as(std::uint32_t magic, const Packet& packet, std::array<std::uint8_t, size>& bytes) noexcept {
-  wire::Writer writer(bytes.data());
-  writer.integer(magic);
-  writer.integer(kTouchballVersion);
-  writer.integer(std::uint16_t{0});
-  body(writer, packet);
-  for (std::size_t i = 0; i < kAuthenticationSize; ++i) {
-    writer.integer(std::uint8_t{0});
+template <typename Wire, typename Packet>
+void handshake_body(Wire& wire, Packet& packet) {
+  for (auto& byte : packet.nonce) {
+    wire.integer(byte);
   }
-  writer.integer(crc32(bytes.data(), size - kChecksumSize));
+  for (auto& byte : packet.echo) {
+    wire.integer(byte);
+  }
+}
+void body(wire::Writer& wire, const TouchballHandshake& packet) { handshake_body(wire, packet); }
+void body(wire::Reader& wire, TouchballHandshake& packet) { handshake_body(wire, packet); }
+
+/// Frame of each packet.
+template <typename Packet>
+struct Frame;
+template <>
+struct Frame<TouchballUp> {
+  static constexpr std::uint32_t magic = kUpMagic;
+  static constexpr std::size_t size = kTouchballUpSize;
+};
+template <>
+struct Frame<TouchballDown> {
+  static constexpr std::uint32_t magic = kDownMagic;
+  static constexpr std::size_t size = kTouchballDownSize;
+};
+template <>
+struct Frame<TouchballHandshake> {
+  static constexpr std::uint32_t magic = kHandshakeMagic;
+  static constexpr std::size_t size = kTouchballHandshakeSize;
+};
+
+template <typename Packet>
+PacketFault encode_as(const Packet& packet, std::array<std::uint8_t, Frame<Packet>::size>& bytes,
+                      Authentication authentication) noexcept {
+  wire::Writer writer(bytes.data());
+  writer.integer(Frame<Packet>::magic);
+  writer.integer(kTouchballVersion);
+  writer.integer(authentication == Authentication::kTag ? kAuthenticatedFlag : std::uint16_t{0});
+  body(writer, packet);
+  std::memset(bytes.data() + bytes.size() - kTouchballTrailerSize, 0, kTouchballTrailerSize);
+  if (authentication == Authentication::kNone) {
+    wire::put(bytes.data() + bytes.size() - kChecksumSize, crc32(bytes.data(), bytes.size() - kChecksumSize), 4);
+  }
   return writer.fault();
 }
 
@@ -120,34 +154,40 @@ PacketFault fault(PacketError error, const char* field, double value, double exp
   return {error, "", field, -1, value, expected, expected};
 }
 
-/// Magic and version come before the checksum, so that a foreign datagram is named as such.
-PacketFault check_frame(const std::uint8_t* data, std::size_t size, std::size_t expected,
-                        std::uint32_t magic) noexcept {
-  if (data == nullptr || size != expected) {
-    return fault(PacketError::kSize, "size", static_cast<double>(size), static_cast<double>(expected));
+/// What the sender cannot have meant for this receiver, or for a receiver with (without) a key.
+template <typename Packet>
+PacketFault frame_fault(const std::uint8_t* data, std::size_t size, Authentication authentication) noexcept {
+  if (data == nullptr || size != Frame<Packet>::size) {
+    return fault(PacketError::kSize, "size", static_cast<double>(size), static_cast<double>(Frame<Packet>::size));
   }
-  const auto seen_magic = wire::get(data, 4);
-  if (seen_magic != magic) {
-    return fault(PacketError::kMagic, "magic", static_cast<double>(seen_magic), static_cast<double>(magic));
+  const auto magic = wire::get(data, 4);
+  if (magic != Frame<Packet>::magic) {
+    return fault(PacketError::kMagic, "magic", static_cast<double>(magic), static_cast<double>(Frame<Packet>::magic));
   }
   const auto version = wire::get(data + 4, 2);
   if (version != kTouchballVersion) {
     return fault(PacketError::kVersion, "version", static_cast<double>(version), kTouchballVersion);
   }
+  const auto flags = wire::get(data + 6, 2);
+  if (flags & ~std::uint64_t{kAuthenticatedFlag}) {
+    return fault(PacketError::kReserved, "flags", static_cast<double>(flags), 0);
+  }
+  const bool wanted = authentication == Authentication::kTag;
+  if ((flags == kAuthenticatedFlag) != wanted) {
+    return fault(wanted ? PacketError::kUnauthenticated : PacketError::kAuthenticated, "flags",
+                 static_cast<double>(flags), wanted ? 1 : 0);
+  }
+  return {};
+}
+
+PacketFault trailer_fault(const std::uint8_t* data, std::size_t size, Authentication authentication) noexcept {
   const auto checksum = wire::get(data + size - kChecksumSize, 4);
   const auto computed = crc32(data, size - kChecksumSize);
   if (checksum != computed) {
     return fault(PacketError::kChecksum, "checksum", static_cast<double>(checksum), static_cast<double>(computed));
   }
-  const auto flags = wire::get(data + 6, 2);
-  if (flags & kAuthenticatedFlag) {
-    return fault(PacketError::kAuthenticated, "flags", static_cast<double>(flags), 0);
-  }
-  if (flags != 0) {
-    return fault(PacketError::kReserved, "flags", static_cast<double>(flags), 0);
-  }
-  for (std::size_t i = 0; i < kAuthenticationSize; ++i) {
-    const auto byte = data[size - kChecksumSize - kAuthenticationSize + i];
+  for (std::size_t i = 0; authentication == Authentication::kNone && i < kTouchballTagSize; ++i) {
+    const auto byte = data[size - kTouchballTrailerSize + i];
     if (byte != 0) {
       return fault(PacketError::kReserved, "authentication", byte, 0);
     }
@@ -156,10 +196,13 @@ PacketFault check_frame(const std::uint8_t* data, std::size_t size, std::size_t 
 }
 
 template <typename Packet>
-PacketFault decode_as(std::uint32_t magic, const std::uint8_t* data, std::size_t size, std::size_t expected,
-                      Packet& packet) noexcept {
-  if (const PacketFault frame = check_frame(data, size, expected, magic)) {
+PacketFault decode_as(const std::uint8_t* data, std::size_t size, Packet& packet,
+                      Authentication authentication) noexcept {
+  if (const PacketFault frame = frame_fault<Packet>(data, size, authentication)) {
     return frame;
+  }
+  if (const PacketFault trailer = trailer_fault(data, size, authentication)) {
+    return trailer;
   }
   Packet decoded;
   wire::Reader reader(data + 8);
@@ -170,44 +213,75 @@ PacketFault decode_as(std::uint32_t magic, const std::uint8_t* data, std::size_t
   return reader.fault();
 }
 
-template <typename Packet>
-Packet decode_or_throw(const std::uint8_t* data, std::size_t size) {
-  Packet packet;
-  if (const PacketFault refused = decode(data, size, packet)) {
-    throw ProtocolError(to_string(refused));
-  }
-  return packet;
-}
-
 template <typename Bytes, typename Packet>
-Bytes encode_or_throw(const Packet& packet) {
+Bytes encode_or_throw(const Packet& packet, Authentication authentication) {
   Bytes bytes;
-  if (const PacketFault refused = encode(packet, bytes)) {
+  if (const PacketFault refused = encode(packet, bytes, authentication)) {
     throw ProtocolError(to_string(refused));
   }
   return bytes;
 }
 
+template <typename Packet>
+Packet decode_or_throw(const std::uint8_t* data, std::size_t size, Authentication authentication) {
+  Packet packet;
+  if (const PacketFault refused = decode_as(data, size, packet, authentication)) {
+    throw ProtocolError(to_string(refused));
+  }
+  return packet;
+}
+
 }  // namespace
 
-PacketFault encode(const TouchballUp& packet, TouchballUpBytes& bytes) noexcept {
-  return encode_as(kUpMagic, packet, bytes);
+PacketFault encode(const TouchballUp& packet, TouchballUpBytes& bytes, Authentication authentication) noexcept {
+  return encode_as(packet, bytes, authentication);
 }
-PacketFault encode(const TouchballDown& packet, TouchballDownBytes& bytes) noexcept {
-  return encode_as(kDownMagic, packet, bytes);
+PacketFault encode(const TouchballDown& packet, TouchballDownBytes& bytes, Authentication authentication) noexcept {
+  return encode_as(packet, bytes, authentication);
 }
-PacketFault decode(const std::uint8_t* data, std::size_t size, TouchballUp& packet) noexcept {
-  return decode_as(kUpMagic, data, size, kTouchballUpSize, packet);
-}
-PacketFault decode(const std::uint8_t* data, std::size_t size, TouchballDown& packet) noexcept {
-  return decode_as(kDownMagic, data, size, kTouchballDownSize, packet);
+void encode(const TouchballHandshake& packet, TouchballHandshakeBytes& bytes) noexcept {
+  encode_as(packet, bytes, Authentication::kTag);
 }
 
-TouchballUpBytes encode(const TouchballUp& packet) { return encode_or_throw<TouchballUpBytes>(packet); }
-TouchballDownBytes encode(const TouchballDown& packet) { return encode_or_throw<TouchballDownBytes>(packet); }
-TouchballUp decode_up(const std::uint8_t* data, std::size_t size) { return decode_or_throw<TouchballUp>(data, size); }
-TouchballDown decode_down(const std::uint8_t* data, std::size_t size) {
-  return decode_or_throw<TouchballDown>(data, size);
+void seal(std::uint8_t* bytes, std::size_t size, const std::uint8_t* tag) noexcept {
+  std::memcpy(bytes + size - kTouchballTrailerSize, tag, kTouchballTagSize);
+  wire::put(bytes + size - kChecksumSize, crc32(bytes, size - kChecksumSize), 4);
+}
+
+template <typename Packet>
+PacketFault check_frame(const std::uint8_t* data, std::size_t size, Authentication authentication) noexcept {
+  return frame_fault<Packet>(data, size, authentication);
+}
+template PacketFault check_frame<TouchballUp>(const std::uint8_t*, std::size_t, Authentication) noexcept;
+template PacketFault check_frame<TouchballDown>(const std::uint8_t*, std::size_t, Authentication) noexcept;
+template PacketFault check_frame<TouchballHandshake>(const std::uint8_t*, std::size_t, Authentication) noexcept;
+
+PacketFault decode(const std::uint8_t* data, std::size_t size, TouchballUp& packet,
+                   Authentication authentication) noexcept {
+  return decode_as(data, size, packet, authentication);
+}
+PacketFault decode(const std::uint8_t* data, std::size_t size, TouchballDown& packet,
+                   Authentication authentication) noexcept {
+  return decode_as(data, size, packet, authentication);
+}
+PacketFault decode(const std::uint8_t* data, std::size_t size, TouchballHandshake& packet) noexcept {
+  return decode_as(data, size, packet, Authentication::kTag);
+}
+
+TouchballUpBytes encode(const TouchballUp& packet, Authentication authentication) {
+  return encode_or_throw<TouchballUpBytes>(packet, authentication);
+}
+TouchballDownBytes encode(const TouchballDown& packet, Authentication authentication) {
+  return encode_or_throw<TouchballDownBytes>(packet, authentication);
+}
+TouchballUp decode_up(const std::uint8_t* data, std::size_t size, Authentication authentication) {
+  return decode_or_throw<TouchballUp>(data, size, authentication);
+}
+TouchballDown decode_down(const std::uint8_t* data, std::size_t size, Authentication authentication) {
+  return decode_or_throw<TouchballDown>(data, size, authentication);
+}
+TouchballHandshake decode_handshake(const std::uint8_t* data, std::size_t size) {
+  return decode_or_throw<TouchballHandshake>(data, size, Authentication::kTag);
 }
 
 }  // namespace saras

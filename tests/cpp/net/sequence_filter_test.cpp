@@ -30,6 +30,16 @@ TEST(SequenceFilter, ARestartedSenderIsAcceptedAndItsPredecessorIsNot) {
   EXPECT_TRUE(filter.accept(6, 1));
 }
 
+TEST(SequenceFilter, AfterARestartAnySessionIsTheNewest) {
+  SequenceFilter filter;
+  EXPECT_TRUE(filter.accept(9, 1000000));
+  filter.restart();
+  EXPECT_TRUE(filter.accept(5, 0));  // a sender whose clock was set back
+  EXPECT_FALSE(filter.accept(5, 0));
+  EXPECT_TRUE(filter.accept(5, 1));
+  EXPECT_EQ(filter.counts().sessions, 2u);
+}
+
 TEST(SequenceFilter, HoldsAtTheEndsOfTheNumberRange) {
   constexpr auto kLast = std::numeric_limits<std::uint64_t>::max();
   SequenceFilter filter;

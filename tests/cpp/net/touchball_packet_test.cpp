@@ -79,6 +79,54 @@ TEST(TouchballPacket, AnAuthenticatedDatagramIsRefusedByName) {
   EXPECT_THROW(decode_up(bytes.data(), bytes.size()), ProtocolError);
 }
 
+TEST(TouchballPacket, AnAuthenticatedDatagramCarriesItsTagBeforeTheChecksum) {
+  TouchballUpBytes bytes = encode(example_up(), Authentication::kTag);
+  TouchballUp target;
+  EXPECT_EQ(decode(bytes.data(), bytes.size(), target, Authentication::kTag).error, PacketError::kChecksum);
+  std::array<std::uint8_t, kTouchballTagSize> tag;
+  tag.fill(0xA5);
+  seal(bytes.data(), bytes.size(), tag.data());
+  EXPECT_EQ(bytes[6], 1);
+  EXPECT_EQ(bytes[kTouchballUpSize - 21], encode(example_up())[kTouchballUpSize - 21]);
+  EXPECT_EQ(bytes[kTouchballUpSize - 20], 0xA5);
+  EXPECT_EQ(bytes[kTouchballUpSize - 5], 0xA5);
+  EXPECT_FALSE(decode(bytes.data(), bytes.size(), target, Authentication::kTag));
+  EXPECT_EQ(encode(target), encode(example_up()));  // the same fields
+  const TouchballUpBytes plain = encode(example_up());
+  EXPECT_EQ(decode(plain.data(), plain.size(), target, Authentication::kTag).error, PacketError::kUnauthenticated);
+}
+
+TEST(TouchballPacket, TheFrameIsCheckedWithoutReadingFurther) {
+  const TouchballUpBytes bytes = encode(example_up(), Authentication::kTag);
+  EXPECT_FALSE(check_frame<TouchballUp>(bytes.data(), bytes.size(), Authentication::kTag));
+  EXPECT_EQ(check_frame<TouchballUp>(bytes.data(), bytes.size() - 1, Authentication::kTag).error, PacketError::kSize);
+  EXPECT_EQ(check_frame<TouchballUp>(bytes.data(), bytes.size(), Authentication::kNone).error,
+            PacketError::kAuthenticated);
+  EXPECT_EQ(check_frame<TouchballUp>(nullptr, 0, Authentication::kTag).error, PacketError::kSize);
+}
+
+TEST(TouchballPacket, AHandshakeCarriesBothNonces) {
+  TouchballHandshake sent;
+  for (std::uint8_t i = 0; i < 16; ++i) {
+    sent.nonce[i] = i;
+    sent.echo[i] = static_cast<std::uint8_t>(0xF0 + i);
+  }
+  TouchballHandshakeBytes bytes;
+  encode(sent, bytes);
+  const std::array<std::uint8_t, kTouchballTagSize> tag{1};
+  seal(bytes.data(), bytes.size(), tag.data());
+  EXPECT_EQ(std::string(bytes.begin(), bytes.begin() + 4), "STBH");
+  EXPECT_EQ(bytes[8 + 3], 3);
+  EXPECT_EQ(bytes[24 + 3], 0xF3);
+  TouchballHandshake received;
+  ASSERT_FALSE(decode(bytes.data(), bytes.size(), received));
+  EXPECT_EQ(received.nonce, sent.nonce);
+  EXPECT_EQ(received.echo, sent.echo);
+  EXPECT_EQ(decode(bytes.data(), bytes.size() - 1, received).error, PacketError::kSize);
+  bytes[20] ^= 1;
+  EXPECT_EQ(decode(bytes.data(), bytes.size(), received).error, PacketError::kChecksum);
+}
+
 TEST(TouchballPacket, ReservedBitsVersionsAndEnumsAreChecked) {
   const auto refused = [](std::size_t offset, std::uint8_t value) {
     TouchballUpBytes bytes = encode(example_up());

@@ -20,6 +20,9 @@ struct SequenceCounts {
 class SequenceFilter {
  public:
   bool accept(std::uint64_t session, std::uint64_t seq) noexcept;
+  /// The next datagram begins a session whatever its number, because a handshake has proved that it is a new one:
+  /// a sender whose wall clock was set back is heard again. The counts go on.
+  void restart() noexcept { is_new_ = true; }
   const SequenceCounts& counts() const noexcept { return counts_; }
   bool has_seen() const noexcept { return counts_.sessions > 0; }
   std::uint64_t session() const noexcept { return session_; }
@@ -29,6 +32,7 @@ class SequenceFilter {
   std::uint64_t session_ = 0;
   std::uint64_t seq_ = 0;
   std::uint64_t received_ = 0;  ///< bit i: seq_ - i was received
+  bool is_new_ = true;          ///< no datagram since construction or restart
   SequenceCounts counts_;
 };
 

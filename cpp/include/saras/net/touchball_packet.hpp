@@ -93,18 +93,34 @@ struct TouchballDown {
   TouchballDownSide right;
 };
 
+/// First message, answer and confirmation of the handshake that begins an authenticated session
+/// (docs/protocols.md). Always authenticated.
+struct TouchballHandshake {
+  std::array<std::uint8_t, 16> nonce{};  ///< drawn by the sender
+  std::array<std::uint8_t, 16> echo{};   ///< the receiver's own nonce, as the sender heard it; 0: none
+};
+
+/// Whether a datagram carries an authentication tag. Which of the two a receiver wants is its configuration:
+/// a datagram's own flag is only compared with it.
+enum class Authentication : std::uint8_t { kNone = 0, kTag = 1 };
+
 inline constexpr std::uint16_t kTouchballVersion = 1;
 inline constexpr std::size_t kTouchballUpSize = 580;
 inline constexpr std::size_t kTouchballDownSize = 260;
+inline constexpr std::size_t kTouchballHandshakeSize = 60;
+inline constexpr std::size_t kTouchballTagSize = 16;
+/// Tag and CRC-32 at the end of a datagram. The tag authenticates all bytes before itself.
+inline constexpr std::size_t kTouchballTrailerSize = kTouchballTagSize + 4;
 
 enum class PacketError : std::uint8_t {
   kNone = 0,
-  kSize,           ///< not the length of this packet
-  kChecksum,       ///< CRC-32 does not match
-  kMagic,          ///< another protocol or direction
-  kVersion,        ///< another version of this protocol
-  kAuthenticated,  ///< the datagram says it is authenticated, which this version cannot check
-  kReserved,       ///< a reserved bit or byte is set
+  kSize,             ///< not the length of this packet
+  kChecksum,         ///< CRC-32 does not match
+  kMagic,            ///< another protocol or direction
+  kVersion,          ///< another version of this protocol
+  kAuthenticated,    ///< has a tag, and the receiver has no key
+  kUnauthenticated,  ///< has no tag, and the receiver has a key
+  kReserved,         ///< a reserved bit or byte is set
   kNotFinite,
   kOutOfRange,
   kNotUnit,  ///< quaternion norm differs from 1 by more than 1e-6
@@ -126,18 +142,37 @@ std::string to_string(const PacketFault& fault);
 
 using TouchballUpBytes = std::array<std::uint8_t, kTouchballUpSize>;
 using TouchballDownBytes = std::array<std::uint8_t, kTouchballDownSize>;
+using TouchballHandshakeBytes = std::array<std::uint8_t, kTouchballHandshakeSize>;
 
-/// Encodes; on a fault `bytes` are unspecified and must not be sent. No allocation.
-PacketFault encode(const TouchballUp& packet, TouchballUpBytes& bytes) noexcept;
-PacketFault encode(const TouchballDown& packet, TouchballDownBytes& bytes) noexcept;
-/// Decodes strictly; on a fault `packet` stays as it was. No allocation.
-PacketFault decode(const std::uint8_t* data, std::size_t size, TouchballUp& packet) noexcept;
-PacketFault decode(const std::uint8_t* data, std::size_t size, TouchballDown& packet) noexcept;
+/// Encodes; on a fault `bytes` are unspecified and must not be sent. No allocation. With kTag the datagram is whole
+/// only after `seal`.
+PacketFault encode(const TouchballUp& packet, TouchballUpBytes& bytes,
+                   Authentication authentication = Authentication::kNone) noexcept;
+PacketFault encode(const TouchballDown& packet, TouchballDownBytes& bytes,
+                   Authentication authentication = Authentication::kNone) noexcept;
+void encode(const TouchballHandshake& packet, TouchballHandshakeBytes& bytes) noexcept;
+/// Puts tag and CRC-32 at the end of an encoded datagram of `size` bytes, which must be at least the trailer's.
+void seal(std::uint8_t* bytes, std::size_t size, const std::uint8_t* tag) noexcept;
+
+/// What is checked before the tag: length, magic, version and whether there is a tag. Reads no other field.
+template <typename Packet>
+PacketFault check_frame(const std::uint8_t* data, std::size_t size, Authentication authentication) noexcept;
+
+/// Decodes strictly; on a fault `packet` stays as it was. No allocation. The tag is not checked here: with kTag the
+/// caller has compared it with the one of all bytes before it, and this comes after.
+PacketFault decode(const std::uint8_t* data, std::size_t size, TouchballUp& packet,
+                   Authentication authentication = Authentication::kNone) noexcept;
+PacketFault decode(const std::uint8_t* data, std::size_t size, TouchballDown& packet,
+                   Authentication authentication = Authentication::kNone) noexcept;
+PacketFault decode(const std::uint8_t* data, std::size_t size, TouchballHandshake& packet) noexcept;
 
 /// The same, throwing ProtocolError with the fault's text.
-TouchballUpBytes encode(const TouchballUp& packet);
-TouchballDownBytes encode(const TouchballDown& packet);
-TouchballUp decode_up(const std::uint8_t* data, std::size_t size);
-TouchballDown decode_down(const std::uint8_t* data, std::size_t size);
+TouchballUpBytes encode(const TouchballUp& packet, Authentication authentication = Authentication::kNone);
+TouchballDownBytes encode(const TouchballDown& packet, Authentication authentication = Authentication::kNone);
+TouchballUp decode_up(const std::uint8_t* data, std::size_t size,
+                      Authentication authentication = Authentication::kNone);
+TouchballDown decode_down(const std::uint8_t* data, std::size_t size,
+                          Authentication authentication = Authentication::kNone);
+TouchballHandshake decode_handshake(const std::uint8_t* data, std::size_t size);
 
 }  // namespace saras

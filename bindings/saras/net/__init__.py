@@ -1,5 +1,7 @@
 """Datagrams between a console and the platform (docs/protocols.md), and what a receiver needs around them.
 
+Authentication is in ``saras.net.trust``, its key file in ``saras.net.keys``.
+
 Pure: no sockets, no clocks. ``TouchballUp.decode(data)`` and ``packet.encode()`` refuse with
 ``saras.ProtocolError`` what the other end would refuse; nothing half-decoded is ever handed out.
 """
@@ -9,14 +11,18 @@ from saras._core.net import (
     GuardState,
     LinkAge,
     PortLedger,
+    ReplayVerdict,
+    ReplayWindow,
     SequenceCounts,
     SequenceFilter,
     SimballJoints,
     TouchballDown,
     TouchballDownSide,
+    TouchballHandshake,
     TouchballUp,
     TouchballUpSide,
     crc32,
+    seal,
 )
 
 __all__ = [
@@ -24,12 +30,16 @@ __all__ = [
     "GuardState",
     "LinkAge",
     "PortLedger",
+    "ReplayVerdict",
+    "ReplayWindow",
     "SequenceCounts",
     "SequenceFilter",
     "SimballJoints",
     "TouchballDown",
     "TouchballDownSide",
+    "TouchballHandshake",
     "TouchballUp",
     "TouchballUpSide",
     "crc32",
+    "seal",
 ]
