@@ -18,6 +18,7 @@ import saras
 #: name: (module, one line for --help)
 COMMANDS: dict[str, tuple[str, str]] = {
     "console": ("saras.console.command", "read the two handles, guard their ports, talk to the platform over UDP"),
+    "keys": ("saras.net.command", "make and check the key file of a console's link over a network"),
     "regions": ("saras.collision.command", "make forbidden regions from a bone's mesh, or check a file of them"),
     "replay": ("saras.replay", "run the laws again on recorded inputs and compare"),
     "report": ("saras.report.command", "write the HTML report of a recorded session"),
