@@ -9,7 +9,9 @@ import time
 from typing import NamedTuple
 
 from saras import ConfigError, ProtocolError
-from saras.net import LinkAge, SequenceFilter, TouchballDown, TouchballUp
+from saras.net import LinkAge, SequenceFilter, TouchballDown, TouchballHandshake, TouchballUp
+from saras.net.keys import Keys
+from saras.net.trust import COUNTS, PlatformEnd, TrustError
 
 # Larger than any datagram of the protocol, so that an oversized one is seen as such and not as a good prefix.
 RECEIVE_BYTES = 2048
@@ -27,14 +29,15 @@ class Received(NamedTuple):
 class ConsoleLink:
     """Receives, filters and counts; sends down datagrams to the console.
 
-    The link carries no authentication yet, so anything but loopback is refused (ConfigError): on a network anybody
-    could move the arms.
+    Without keys anything but loopback is refused (ConfigError): on a network anybody could move the arms. With keys
+    only authenticated datagrams are believed, on loopback too.
     """
 
-    def __init__(self, bind: tuple[str, int], console: tuple[str, int], age_limit_s: float) -> None:
-        for name, (host, _) in (("bind", bind), ("console", console)):
-            if not ipaddress.ip_address(host).is_loopback:
-                raise ConfigError(f"{name} address {host}: must be loopback, the link is not authenticated")
+    def __init__(
+        self, bind: tuple[str, int], console: tuple[str, int], age_limit_s: float, keys: Keys | None = None
+    ) -> None:
+        check_addresses(bind[0], console[0], keys is not None)
+        self._trust = PlatformEnd(keys) if keys is not None else None
         self.console = console
         self.age_limit_s = age_limit_s
         self.accepted = self.overdue = self.malformed = self.foreign = 0
@@ -56,7 +59,7 @@ class ConsoleLink:
         return self._socket.getsockname()[1]
 
     def receive(self) -> Received | str | None:
-        """A good datagram, the reason why one was refused, or None when nothing came in 0.2 s."""
+        """A good datagram, the reason why one was refused, or None: nothing in 0.2 s, or a handshake's message."""
         try:
             data, sender = self._socket.recvfrom(RECEIVE_BYTES)
         except TimeoutError:
@@ -66,10 +69,14 @@ class ConsoleLink:
             self.foreign += 1
             return f"from {sender[0]}, not from the console at {self.console[0]}"
         try:
-            packet = TouchballUp.decode(data)
+            packet = self._decode(data, now_ns)
+        except TrustError as error:  # counted by name already
+            return str(error)
         except ProtocolError as error:
             self.malformed += 1
             return str(error)
+        if packet is None:
+            return None
         previous = self.sequence.session
         if not self.sequence.accept(packet.session, packet.seq):
             return f"session {packet.session} seq {packet.seq}: not newer than {previous} {self.sequence.seq}"
@@ -83,6 +90,23 @@ class ConsoleLink:
         self.accepted += 1
         self.newest, self._newest_at_ns = packet, now_ns
         return Received(packet, self._stamp_ns(packet.sender_time_ns))
+
+    def _decode(self, data: bytes, now_ns: int) -> TouchballUp | None:
+        """The datagram's packet; None after a message of the handshake. Raises ProtocolError."""
+        if self._trust is None:
+            return TouchballUp.decode(data)
+        if len(data) != TouchballHandshake.SIZE:
+            return self._trust.open(data, now_ns)
+        begun = self._trust.session
+        answer = self._trust.handshake(data, now_ns)
+        if answer is not None:
+            self._send(answer)
+        if self._trust.session is not begun:
+            # A restarted console, or the same one after a silence: its clock and its numbers begin anew.
+            self.sequence.restart()
+            self.age.reset()
+            self._anchor_ns = None
+        return None
 
     def _stamp_ns(self, sender_time_ns: int) -> int:
         """Sender's time on the ROS clock. A stamp never lies in the future; a stepped clock anchors anew."""
@@ -99,7 +123,10 @@ class ConsoleLink:
         return self.age.age_s(time.monotonic_ns())
 
     def send(self, packet: TouchballDown) -> None:
-        """Completes session, sequence, time and echo, and sends. A console that is not there is no error."""
+        """Completes session, sequence, time and echo, and sends. A console that is not there is no error.
+
+        With keys nothing goes out before a console has begun a session.
+        """
         self._seq += 1
         packet.session, packet.seq = self._session, self._seq
         now_ns = time.monotonic_ns()
@@ -107,9 +134,14 @@ class ConsoleLink:
         if self.newest is not None:
             packet.echo_session, packet.echo_seq = self.newest.session, self.newest.seq
             packet.echo_time_ns, packet.echo_hold_ns = self.newest.sender_time_ns, now_ns - self._newest_at_ns
+        data = packet.encode() if self._trust is None else self._trust.seal(packet)
+        if data is not None:
+            self._send(data)
+
+    def _send(self, data: bytes) -> None:
         # A loopback port that nobody has opened yet refuses; the console's age tells.
         with contextlib.suppress(OSError):
-            self._socket.sendto(packet.encode(), self.console)
+            self._socket.sendto(data, self.console)
 
     def close(self) -> None:
         """Closes the socket; receive() then ends."""
@@ -128,4 +160,21 @@ class ConsoleLink:
             "overdue": self.overdue,
             "malformed": self.malformed,
             "foreign": self.foreign,
+            **(self._trust.counts if self._trust is not None else dict.fromkeys(COUNTS, 0)),
         }
+
+
+def check_addresses(bind_host: str, console_host: str, keyed: bool) -> None:
+    """Raises ConfigError for what needs keys and has none, or cannot reach the console."""
+    hosts = {"bind_host": ipaddress.ip_address(bind_host), "console_host": ipaddress.ip_address(console_host)}
+    for name, host in hosts.items():
+        if not keyed and not host.is_loopback:
+            raise ConfigError(
+                f"{name} = {host}: must be a loopback address, or name a key file in key_file (saras keys make FILE): "
+                "the link is not authenticated without one"
+            )
+    if hosts["bind_host"].is_loopback and not hosts["console_host"].is_loopback:
+        raise ConfigError(
+            f"bind_host = {bind_host}: a loopback address does not reach console_host = {console_host}; "
+            "for example 0.0.0.0"
+        )

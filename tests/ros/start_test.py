@@ -3,7 +3,9 @@
 
 import copy
 import math
+import tempfile
 import unittest
+from pathlib import Path
 
 import numpy as np
 import rospy
@@ -89,6 +91,20 @@ class StartTest(unittest.TestCase):
         self.spoil(
             "touchball_receiver", "console.yaml", "touchball_receiver", ("bind_host",), "0.0.0.0", "0.0.0.0", "loopback"
         )
+
+    def test_a_key_file_that_others_can_read(self):
+        with tempfile.NamedTemporaryFile() as file:
+            Path(file.name).chmod(0o644)
+            self.spoil(
+                "touchball_receiver",
+                "console.yaml",
+                "touchball_receiver",
+                ("key_file",),
+                file.name,
+                file.name,
+                "mode = 0644",
+                "0600",
+            )
 
     def spoil_da_vinci(self, path, value, *words):
         values = {**load("dvrk.yaml", "dvrk_sim"), "scene_file": str(CONFIG / "scene.yaml")}

@@ -5,6 +5,7 @@
   saras console --device recorded --file motion.zip --member NAME
   saras console --device manual          mouse, keyboard or gamepad
   saras console calibrate --device openhaptics
+  saras console --key saras.key --platform 192.168.5.1:48010 --listen 0.0.0.0:48011    over a network (saras keys make)
 
 Stops on Ctrl-C or SIGTERM with forces at zero. Exit codes: 0 done, 1 the control loop failed, 2 refused input.
 """
@@ -27,6 +28,7 @@ from saras.console.link import Address, TouchballLink, new_session
 from saras.console.loop import PeriodicLoop
 from saras.console.program import SIDES, Program, ProgramConfig
 from saras.console.status import open_status
+from saras.net.keys import load as load_keys
 
 log = logging.getLogger("saras.console")
 
@@ -39,6 +41,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("action", nargs="?", choices=("run", "calibrate"), default="run", help="default: run")
     parser.add_argument("--platform", default="127.0.0.1:48010", metavar="HOST:PORT", help="where the platform listens")
     parser.add_argument("--listen", default="127.0.0.1:48011", metavar="HOST:PORT", help="where this console listens")
+    parser.add_argument(
+        "--key",
+        type=Path,
+        metavar="FILE",
+        help="key file (saras keys make FILE) that authenticates the link; none: loopback only",
+    )
     parser.add_argument("--sides", default="left,right", help="handles to open: left,right (default), left or right")
     parser.add_argument("--duration", type=float, metavar="S", help="stop after S seconds (default: run until stopped)")
     parser.add_argument("--send-rate-hz", type=float, default=100.0, help="datagrams a second (default 100)")
@@ -138,7 +146,9 @@ def _run(arguments: argparse.Namespace, devices: dict[str, HandleDevice]) -> int
     calibration = _load_calibrations(arguments.calibration, devices)
     session = new_session()
     platform = Address.parse(arguments.platform, "platform")
-    link = TouchballLink(Address.parse(arguments.listen, "listen"), platform, session, config.guard.link_timeout_s)
+    keys = load_keys(arguments.key) if arguments.key else None
+    listen = Address.parse(arguments.listen, "listen")
+    link = TouchballLink(listen, platform, session, config.guard.link_timeout_s, keys)
     program = Program(config, link, devices, calibration, session)
     status, handler, _ = open_status(arguments.plain)
     handlers = [handler]
@@ -148,7 +158,14 @@ def _run(arguments: argparse.Namespace, devices: dict[str, HandleDevice]) -> int
     log.setLevel(logging.INFO)
     for each in handlers:
         log.addHandler(each)
-    log.info("session %d: %s, listening on %s, platform %s", session, ", ".join(devices), link.address, platform)
+    log.info(
+        "session %d: %s, listening on %s, platform %s, %s",
+        session,
+        ", ".join(devices),
+        link.address,
+        platform,
+        "loopback only: no key file" if keys is None else f"keys {keys.fingerprint()}",
+    )
     for side, hand in program.hands.items():
         if not hand.calibrated:
             log.warning("%s: not calibrated, raw joints are used; calibrate with: saras console calibrate", side)

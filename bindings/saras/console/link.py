@@ -1,6 +1,6 @@
 """UDP end of the console: sends up datagrams, hands out the newest down datagram, keeps the counts.
 
-Datagrams are not authenticated yet, so both ends must be loopback addresses: anything else is refused.
+Without keys both ends must be loopback addresses: anything else is refused.
 """
 
 from __future__ import annotations
@@ -9,14 +9,17 @@ import ipaddress
 import logging
 import socket
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from saras import ConfigError, ProtocolError
-from saras.net import LinkAge, SequenceFilter, TouchballDown, TouchballUp
+from saras.net import LinkAge, SequenceFilter, TouchballDown, TouchballHandshake, TouchballUp
+from saras.net.keys import Keys
+from saras.net.trust import COUNTS, ConsoleEnd, TrustError
 
 log = logging.getLogger("saras.console")
 
+HEARD_WITHIN_NS = 500_000_000  #: an echo that was held longer does not show that the platform hears this console
 MOST_PER_POLL = 64  #: datagrams read at most in one poll, so that a flood cannot hold the control thread
 
 
@@ -38,15 +41,16 @@ class Address(NamedTuple):
         return f"{self.host}:{self.port}"
 
 
-def loopback(address: Address, name: str) -> tuple[socket.AddressFamily, tuple[str, int]]:
-    """Family and numeric address. Raises ConfigError when it is not on this computer or cannot be resolved."""
+def resolve(address: Address, name: str, keyed: bool) -> tuple[socket.AddressFamily, tuple[str, int]]:
+    """Family and numeric address. Raises ConfigError when it cannot be resolved, or needs keys and has none."""
     try:
         family, _, _, _, resolved = socket.getaddrinfo(address.host, address.port, type=socket.SOCK_DGRAM)[0]
     except socket.gaierror as error:
         raise ConfigError(f"{name} = {address}: {error.strerror}") from None
-    if not ipaddress.ip_address(resolved[0]).is_loopback:
+    if not keyed and not ipaddress.ip_address(resolved[0]).is_loopback:
         raise ConfigError(
-            f"{name} = {address}: must be a loopback address; datagrams without authentication stay on this computer"
+            f"{name} = {address}: must be a loopback address, or give both ends a key file (--key FILE; saras keys "
+            "make FILE): datagrams without authentication stay on this computer"
         )
     return family, (str(resolved[0]), int(resolved[1]))
 
@@ -58,18 +62,27 @@ class LinkCounts:
     sent: int = 0
     send_failed: int = 0
     received: int = 0  #: all that arrived
-    refused: int = 0  #: not decodable, or from elsewhere: changed nothing
+    refused: int = 0  #: not decodable, not believed, or from elsewhere: changed nothing
     last_refusal: str = ""
+    refused_by: dict[str, int] = field(default_factory=lambda: dict.fromkeys(("foreign", "malformed", *COUNTS[1:]), 0))
 
 
 class TouchballLink:
-    """A socket, a sequence filter and an age estimate. One thread only."""
+    """A socket, a sequence filter and an age estimate; with keys an authenticated session. One thread only."""
 
-    def __init__(self, listen: Address, platform: Address, session: int, timeout_s: float) -> None:
-        family, bind_to = loopback(listen, "listen")
-        platform_family, self._platform = loopback(platform, "platform")
+    def __init__(
+        self, listen: Address, platform: Address, session: int, timeout_s: float, keys: Keys | None = None
+    ) -> None:
+        family, bind_to = resolve(listen, "listen", keys is not None)
+        platform_family, self._platform = resolve(platform, "platform", keys is not None)
         if platform_family != family:
             raise ConfigError(f"platform = {platform}: must be of the same IP version as listen = {listen}")
+        if ipaddress.ip_address(bind_to[0]).is_loopback and not ipaddress.ip_address(self._platform[0]).is_loopback:
+            raise ConfigError(
+                f"listen = {listen}: a loopback address does not reach platform = {platform}; for example "
+                f"--listen 0.0.0.0:{listen.port}"
+            )
+        self._trust = ConsoleEnd(keys) if keys is not None else None
         self._socket = socket.socket(family, socket.SOCK_DGRAM)
         self._socket.setblocking(False)
         try:
@@ -88,10 +101,23 @@ class TouchballLink:
         self._refusal_logged_ns = 0
 
     def send(self, up: TouchballUp, now_ns: int) -> None:
-        """Stamps and sends one datagram. Raises ProtocolError when a value may not go out."""
+        """Stamps and sends one datagram. Raises ProtocolError when a value may not go out.
+
+        With keys, nothing goes out but the handshake until the platform has answered it.
+        """
         self._seq += 1
         up.session, up.seq, up.sender_time_ns = self._session, self._seq, now_ns
-        data = up.encode()
+        if self._trust is None:
+            self._send(up.encode())
+            return
+        handshake = self._trust.handshake_due(now_ns)
+        if handshake is not None:
+            self._send(handshake)
+        data = self._trust.seal(up)
+        if data is not None:
+            self._send(data)
+
+    def _send(self, data: bytes) -> None:
         try:
             self._socket.sendto(data, self._platform)
             self.counts.sent += 1
@@ -115,12 +141,14 @@ class TouchballLink:
 
     def _take(self, data: bytes, source: tuple[str, int], now_ns: int) -> TouchballDown | None:
         if source[0] != self._platform[0]:
-            self._refuse(f"datagram from {source[0]}: the platform is {self._platform[0]}", now_ns)
+            self._refuse("foreign", f"datagram from {source[0]}: the platform is {self._platform[0]}", now_ns)
             return None
         try:
-            down = TouchballDown.decode(data)
+            down = self._decode(data, now_ns)
         except ProtocolError as error:
-            self._refuse(str(error), now_ns)
+            self._refuse(error.count if isinstance(error, TrustError) else "malformed", str(error), now_ns)
+            return None
+        if down is None:
             return None
         session = self.filter.session
         if not self.filter.accept(down.session, down.seq):
@@ -131,11 +159,31 @@ class TouchballLink:
         if self._age.received(down.sender_time_ns, now_ns) > self._timeout_s:
             return None  # held up on the way: what it says is past
         if down.echo_session == self._session:
+            if self._trust is not None and down.echo_hold_ns < HEARD_WITHIN_NS:
+                self._trust.hears_us(now_ns)
             self.round_trip_s = max(0, now_ns - down.echo_time_ns - down.echo_hold_ns) * 1e-9
         return down
 
-    def _refuse(self, reason: str, now_ns: int) -> None:
+    def _decode(self, data: bytes, now_ns: int) -> TouchballDown | None:
+        """The datagram's packet; None after a message of the handshake. Raises ProtocolError."""
+        if self._trust is None:
+            return TouchballDown.decode(data)
+        if len(data) != TouchballHandshake.SIZE:
+            return self._trust.open(data, now_ns)
+        begun = self._trust.session
+        confirmation = self._trust.handshake(data, now_ns)
+        if confirmation is not None:
+            self._send(confirmation)
+        if self._trust.session is not begun:
+            log.info("authenticated session with the platform begun")
+            self.filter.restart()
+            self._age.reset()
+            self.round_trip_s = None
+        return None
+
+    def _refuse(self, count: str, reason: str, now_ns: int) -> None:
         self.counts.refused += 1
+        self.counts.refused_by[count] += 1
         self.counts.last_refusal = reason
         if now_ns - self._refusal_logged_ns > 1_000_000_000:
             self._refusal_logged_ns = now_ns
