@@ -240,6 +240,17 @@ def test_addresses_beyond_this_computer_need_keys_and_a_socket_that_reaches_them
     with pytest.raises(ConfigError, match=r"bind_host = 127\.0\.0\.1.*console_host = 192\.0\.2\.1"):
         ConsoleLink(("127.0.0.1", 0), ("192.0.2.1", 1), 1.0, KEYS)
     ConsoleLink(("0.0.0.0", 0), ("192.0.2.1", 1), 1.0, KEYS).close()
+    for host in ("console.lab", "::1", ""):
+        with pytest.raises(ConfigError, match=r"console_host = .*numeric IPv4"):
+            ConsoleLink(("127.0.0.1", 0), (host, 1), 1.0)
+
+
+def test_a_console_that_nobody_answers_says_what_it_may_be(caplog):
+    console = TouchballLink(Address("127.0.0.1", 0), Address("127.0.0.1", 9), 1, 0.06, KEYS)
+    for second in range(12):
+        console.send(TouchballUp(), second * 1_000_000_000)
+    assert caplog.text.count("answers no handshake") == 2 and "another key file" in caplog.text
+    console.close()
 
 
 def test_the_console_program_with_a_key_file_is_heard_killed_and_heard_again(tmp_path):

@@ -20,6 +20,7 @@ from saras.net.trust import COUNTS, ConsoleEnd, TrustError
 log = logging.getLogger("saras.console")
 
 HEARD_WITHIN_NS = 500_000_000  #: an echo that was held longer does not show that the platform hears this console
+UNANSWERED_NS = 5_000_000_000  #: between two hints that no platform has ever answered
 MOST_PER_POLL = 64  #: datagrams read at most in one poll, so that a flood cannot hold the control thread
 
 
@@ -99,6 +100,7 @@ class TouchballLink:
         self._seq = 0
         self._timeout_s = timeout_s
         self._refusal_logged_ns = 0
+        self._unanswered_log_ns: int | None = None
 
     def send(self, up: TouchballUp, now_ns: int) -> None:
         """Stamps and sends one datagram. Raises ProtocolError when a value may not go out.
@@ -116,6 +118,20 @@ class TouchballLink:
         data = self._trust.seal(up)
         if data is not None:
             self._send(data)
+        else:
+            self._say_that_nobody_answers(now_ns)
+
+    def _say_that_nobody_answers(self, now_ns: int) -> None:
+        """A platform says nothing to whom it does not believe, so the user is told here what it may be."""
+        if self._unanswered_log_ns is None:
+            self._unanswered_log_ns = now_ns + UNANSWERED_NS
+        elif now_ns >= self._unanswered_log_ns:
+            self._unanswered_log_ns = now_ns + UNANSWERED_NS
+            log.warning(
+                "the platform at %s:%d answers no handshake: it is not running, has another key file or none, or hears "
+                "another console; its /diagnostics tell which",
+                *self._platform[:2],
+            )
 
     def _send(self, data: bytes) -> None:
         try:
@@ -150,6 +166,8 @@ class TouchballLink:
             return None
         if down is None:
             return None
+        if self._trust is not None and down.echo_session == self._session and down.echo_hold_ns < HEARD_WITHIN_NS:
+            self._trust.hears_us(now_ns)  # also by a late one: another session would not make the link faster
         session = self.filter.session
         if not self.filter.accept(down.session, down.seq):
             return None
@@ -159,8 +177,6 @@ class TouchballLink:
         if self._age.received(down.sender_time_ns, now_ns) > self._timeout_s:
             return None  # held up on the way: what it says is past
         if down.echo_session == self._session:
-            if self._trust is not None and down.echo_hold_ns < HEARD_WITHIN_NS:
-                self._trust.hears_us(now_ns)
             self.round_trip_s = max(0, now_ns - down.echo_time_ns - down.echo_hold_ns) * 1e-9
         return down
 
