@@ -166,7 +166,7 @@ class ConsoleLink:
 
 def check_addresses(bind_host: str, console_host: str, keyed: bool) -> None:
     """Raises ConfigError for what needs keys and has none, or cannot reach the console."""
-    hosts = {"bind_host": ipaddress.ip_address(bind_host), "console_host": ipaddress.ip_address(console_host)}
+    hosts = {"bind_host": _address("bind_host", bind_host), "console_host": _address("console_host", console_host)}
     for name, host in hosts.items():
         if not keyed and not host.is_loopback:
             raise ConfigError(
@@ -178,3 +178,10 @@ def check_addresses(bind_host: str, console_host: str, keyed: bool) -> None:
             f"bind_host = {bind_host}: a loopback address does not reach console_host = {console_host}; "
             "for example 0.0.0.0"
         )
+
+
+def _address(name: str, host: str) -> ipaddress.IPv4Address:
+    try:
+        return ipaddress.IPv4Address(host)
+    except ValueError:
+        raise ConfigError(f"{name} = {host!r}: must be a numeric IPv4 address, for example 127.0.0.1") from None

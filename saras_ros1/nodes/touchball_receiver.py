@@ -108,7 +108,7 @@ class TouchballReceiver(Node):
         bind = (self.params.text("bind_host"), self.params.integer("bind_port", 0, 65535))
         console = (self.params.text("console_host"), self.params.integer("console_port", 1, 65535))
         key_file = self.params.text("key_file", empty=True)
-        keys = load_keys(Path(key_file)) if key_file else None
+        keys = load_keys(Path(key_file).expanduser()) if key_file else None
         self.link = ConsoleLink(bind, console, self.params.number("age_limit_s", 0.005, 10.0), keys)
         self.params.finish()
         self.outputs = {side: Outputs(self, side, buttons_every, state_every) for side in SIDES}
