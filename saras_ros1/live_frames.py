@@ -42,16 +42,16 @@ class LiveFrames(StaticFrames):
         try:
             found = self._buffer.lookup_transform(target, source, rospy.Time(0))
         except tf2_ros.TransformException as error:
-            raise UnknownFrameError(f"no transform {target} ← {source} ({error})") from None
+            raise UnknownFrameError(f"no transform {source} to {target}") from error
         static = found.header.stamp.is_zero()  # every step of the chain is static
         if not static:
             age_s = (rospy.Time.now() - found.header.stamp).to_sec()
             if abs(age_s) > self.timeout_s:  # a stamp from the future is no better
-                raise UnknownFrameError(f"transform {target} ← {source} is {1e3 * age_s:.0f} ms old")
+                raise UnknownFrameError(f"transform {source} to {target} is {1e3 * age_s:.0f} ms old")
         try:
             matrix = convert.transform(found)
         except ValueError as error:
-            raise UnknownFrameError(f"transform {target} ← {source}: {error}") from None
+            raise UnknownFrameError(f"transform {source} to {target}: {error}") from None
         if static:
             self._static[target, source] = (changes, matrix)
         return matrix

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import rospy
 from std_msgs.msg import Float64MultiArray, MultiArrayDimension
 from visualization_msgs.msg import MarkerArray
 
-from saras import Error
+from saras import ConfigError, Error
 from saras.collision import ForbiddenRegions, Partner, ProximityMonitor, ProximityMonitorConfig
 from saras_ros1 import collision_markers
 from saras_ros1.channel import SIDES
@@ -56,6 +58,8 @@ class CollidingRegions(Node):
         if not path:
             rospy.logwarn("regions_file is empty: no forbidden region is watched")
             return ForbiddenRegions((), np.zeros((0, 8, 3)))
+        if not Path(path).is_absolute():  # roslaunch starts nodes in a directory of its own
+            raise ConfigError(f"regions_file = {path!r}: must be an absolute path")
         try:
             return ForbiddenRegions.load(path, scale, rotation, offset_m)
         except OSError as error:
