@@ -15,6 +15,8 @@ PYBIND11_MODULE(_core, m) {
   saras::bindings::bind_sim(sim);
   auto net = m.def_submodule("net", "Datagram codecs");
   saras::bindings::bind_net(net);
+  auto safety = m.def_submodule("safety", "State table of the channels, supervisor, leases");
+  saras::bindings::bind_safety(safety);
   auto console = m.def_submodule("console", "What the console program steps at device rate");
   saras::bindings::bind_console(console);
 }

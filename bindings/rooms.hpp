@@ -11,6 +11,7 @@ void bind_kinematics(pybind11::module_& m);
 void bind_collision(pybind11::module_& m);
 void bind_sim(pybind11::module_& m);
 void bind_net(pybind11::module_& m);
+void bind_safety(pybind11::module_& m);
 void bind_console(pybind11::module_& m);
 
 }  // namespace saras::bindings

@@ -12,6 +12,7 @@ from . import kinematics
 from . import collision
 from . import sim
 from . import net
+from . import safety
 from . import console
 
 __all__: list[str] = [
@@ -26,6 +27,7 @@ __all__: list[str] = [
     "displacement",
     "kinematics",
     "net",
+    "safety",
     "sim",
     "teleop",
 ]
