@@ -1,4 +1,7 @@
-"""The state table of one side: WAITING, READY, ENGAGED, HOLD. No ROS in here, so that tests can walk through it."""
+"""One side of the supervisor: ages and operators' words in, state and reason out, by the state table of saras.safety.
+
+No ROS in here, so that tests can walk through it.
+"""
 
 from __future__ import annotations
 
@@ -6,14 +9,20 @@ import enum
 import math
 from typing import NamedTuple
 
+from saras.safety import CrtkState, SafetyEvent, SafetySign, SafetyState, crtk_state, event_of, next_state
+
+# One console, so no lease yet: who asks is the holder. The tracked pose is referenced at engagement: always aligned.
+_ASKED = int(SafetySign.ENGAGE_ASKED) | int(SafetySign.HOLDER_ASKS) | int(SafetySign.ALIGNED)
+
 
 class State(enum.IntEnum):
-    """Same numbers as saras_ros1/ChannelState."""
+    """The first four have the numbers of saras_ros1/ChannelState; ESTOP goes out as HOLD."""
 
     WAITING = 0
     READY = 1
     ENGAGED = 2
     HOLD = 3
+    ESTOP = 4
 
 
 class Watch(NamedTuple):
@@ -36,7 +45,7 @@ class Watch(NamedTuple):
 
 
 class SideSupervisor:
-    """One side's state. update() each period; engage() and hold() are the operator's words.
+    """One side's state. update() each period; engage(), hold(), disengage(), estop() are the operator's words.
 
     READY falls back to WAITING by itself; ENGAGED falls to HOLD, which is latched until an explicit engage. Silence
     must be seen in two updates in a row, so that one hiccup of this process latches nothing; motion and force do not
@@ -63,11 +72,11 @@ class SideSupervisor:
         missing = [w for w in watches if not w.fresh]
         if self.state == State.ENGAGED:
             if fault:
-                self._hold(fault, "look at the arm, then engage again")
+                self._stop(SafetyEvent.FAULT, fault, "look at the arm, then engage again")
             elif missing and self._was_missing:
-                self._hold(_describe(missing), missing[0].advice)
-        elif self.state != State.HOLD:
-            self.state = State.WAITING if missing else State.READY
+                self._stop(SafetyEvent.LOST, _describe(missing), missing[0].advice)
+        elif self.state in (State.WAITING, State.READY):
+            self._take(SafetyEvent.LOST if missing else SafetyEvent.READY)
             self.reason = _describe(missing) if missing else "all there"
             self.advice = missing[0].advice if missing else "engage to begin"
             self._ready_updates = self._ready_updates + 1 if self.state == State.READY else 0
@@ -80,22 +89,56 @@ class SideSupervisor:
         """(whether engaged now, what was said). refusal: a reason outside this side, such as a dead master."""
         if self.state == State.ENGAGED:
             return True, f"{self.side} is engaged already"
+        if self.state == State.ESTOP:
+            return False, f"{self.side} not engaged: {self.reason}: {self.advice}"
         missing = [w for w in self._watches if not w.fresh]
-        if refusal or missing or not self._watches:
+        there = bool(self._watches) and not missing and not refusal
+        event = event_of(_ASKED | int(SafetySign.ALL_THERE)) if there else event_of(_ASKED)
+        self._take(event)
+        if self.state != State.ENGAGED:
             return False, f"{self.side} not engaged: {refusal or _describe(missing) or self.reason}"
         self.engagement += 1
-        self.state = State.ENGAGED
         self.reason, self.advice = "engaged", ""
         self._auto = False
         return True, f"{self.side} engaged (number {self.engagement})"
 
     def hold(self, reason: str = "the operator asked") -> None:
         """Stops this side."""
-        self._auto = False
-        self._hold(reason, "engage again when ready")
+        if self.state != State.ESTOP:
+            self._stop(SafetyEvent.HOLD, reason, "engage again when ready")
 
-    def _hold(self, reason: str, advice: str) -> None:
-        self.state, self.reason, self.advice = State.HOLD, reason, advice
+    def disengage(self) -> None:
+        """Ends the engagement, or gives a HOLD up: WAITING or READY, as things are. No way out of an E-stop."""
+        if self.state in (State.ENGAGED, State.HOLD):
+            self._stop(SafetyEvent.DISENGAGE, "disengaged by the operator", "")
+
+    def estop(self, reason: str = "E-stop") -> None:
+        """Stops this side at once and stays so until estop_reset(), whatever its state."""
+        self._stop(SafetyEvent.ESTOP, reason, "make it safe, reset the E-stop, then engage again")
+
+    def estop_reset(self) -> None:
+        """To HOLD: nothing moves before an explicit engage."""
+        if self.state == State.ESTOP:
+            self._stop(SafetyEvent.ESTOP_RESET, "the E-stop was reset", "engage again when ready")
+
+    @property
+    def crtk(self) -> str:
+        """CRTK's name of this state."""
+        return crtk_state(SafetyState(int(self.state))).name
+
+    def _stop(self, event: SafetyEvent, reason: str, advice: str) -> None:
+        self._auto = self._auto and event in (SafetyEvent.LOST, SafetyEvent.FAULT)
+        self._take(event)
+        self.reason, self.advice = reason, advice
+
+    def _take(self, event: SafetyEvent) -> None:
+        self.state = State(int(next_state(SafetyState(int(self.state)), event)))
+
+
+def crtk_of_all(names: list[str]) -> str:
+    """CRTK's name of the whole: FAULT when a side is, else ENABLED when one may move, else PAUSED, else DISABLED."""
+    ranks = (CrtkState.FAULT, CrtkState.ENABLED, CrtkState.PAUSED)
+    return next((state.name for state in ranks if state.name in names), CrtkState.DISABLED.name)
 
 
 def _describe(missing: list[Watch]) -> str:

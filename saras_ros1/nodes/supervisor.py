@@ -22,6 +22,7 @@ from saras_ros1.msg import ChannelState
 from saras_ros1.node import Node, run
 from saras_ros1.nodes.tf_transformer import CLUTCH
 from saras_ros1.side_supervisor import SideSupervisor, State, Watch
+from saras_ros1.system_commands import SystemCommands
 
 
 class Side:
@@ -78,8 +79,9 @@ class Side:
         """Publishes now, logs, and leaves an event."""
         self.publish()
         text = f"{self.side}: {self.table.state.name}: {self.table.reason}"
-        (rospy.logerr if self.table.state == State.HOLD else rospy.loginfo)(text)
+        (rospy.logerr if self.table.state >= State.HOLD else rospy.loginfo)(text)
         self.node.event(text)
+        self.node.commands.publish()
 
     def publish(self) -> None:
         """The state as it is."""
@@ -87,7 +89,7 @@ class Side:
         message = ChannelState(
             seq=self._seq,
             side=self.side,
-            state=int(self.table.state),
+            state=min(int(self.table.state), ChannelState.HOLD),  # an E-stop is a HOLD to who only needs to stop
             engagement=self.table.engagement,
             clutch=self._clutch and self.buttons.fresh,
             reason=self.table.reason,
@@ -96,18 +98,29 @@ class Side:
         message.header.stamp = rospy.Time.now()
         self.publisher.publish(message)
 
+    def engage(self) -> tuple[bool, str]:
+        """(whether engaged now, what was said)."""
+        before = self.table.state
+        said = self.table.engage("" if self.node.master_answers else "roscore does not answer")
+        if self.table.state != before:
+            self.changed()
+        return said
+
+    @property
+    def may_move(self) -> bool:
+        """Whether motion flows now."""
+        return self.table.state == State.ENGAGED and not self._clutch
+
     def _on_engage(self, _) -> TriggerResponse:
         with self.node.lock:
-            before = self.table.state
-            done, text = self.table.engage("" if self.node.master_answers else "roscore does not answer")
-            if self.table.state != before:
-                self.changed()
-        return TriggerResponse(done, text)
+            return TriggerResponse(*self.engage())
 
     def _on_hold(self, _) -> TriggerResponse:
         with self.node.lock:
             self.table.hold()
             self.changed()
+        if self.table.state == State.ESTOP:
+            return TriggerResponse(True, f"{self.side} stands by E-stop")
         return TriggerResponse(True, f"{self.side} holds")
 
 
@@ -130,7 +143,9 @@ class Supervisor(Node):
         self._events = self.output("/system/events", String)
         self._heartbeats: dict[str, float] = {}
         rospy.Subscriber("/system/heartbeats", String, self._on_heartbeat, queue_size=100, tcp_nodelay=True)
-        self.sides = [Side(self, side) for side in SIDES]
+        with self.lock:  # a call that comes now waits until all is there
+            self.sides = [Side(self, side) for side in SIDES]
+            self.commands = SystemCommands(self, self.sides)
         self._updates = 0
         self._due_s = time.monotonic()
         self.every(self.period_s, self._update)
@@ -159,6 +174,7 @@ class Supervisor(Node):
             if self._updates % self.publish_every == 0:
                 for side in self.sides:
                     side.publish()
+                self.commands.publish()
 
     def _check_master(self) -> None:
         try:

@@ -3,7 +3,7 @@ import math
 import pytest
 
 pytest.importorskip("rospy")
-from saras_ros1.side_supervisor import SideSupervisor, State, Watch
+from saras_ros1.side_supervisor import SideSupervisor, State, Watch, crtk_of_all
 
 LIMIT_S = 0.06
 
@@ -87,3 +87,48 @@ def test_a_refusal_from_outside_is_told():
     side = SideSupervisor("left")
     side.update(watches())
     assert side.engage("roscore does not answer") == (False, "left not engaged: roscore does not answer")
+
+
+def all_words(side):
+    return [side.engage, side.hold, side.disengage, lambda: side.update(watches()), lambda: side.update(watches(), "x")]
+
+
+@pytest.mark.parametrize("state", ["WAITING", "READY", "ENGAGED", "HOLD"])
+def test_estop_is_latched_from_every_state_and_reset_alone_never_moves(state):
+    side = engaged() if state in ("ENGAGED", "HOLD") else SideSupervisor("left", auto_engage=state == "WAITING")
+    if state == "READY":
+        side.update(watches())
+    elif state == "HOLD":
+        side.hold()
+    before = side.engagement
+    side.estop()
+    for word in all_words(side):
+        word()
+        assert (side.state, side.crtk) == (State.ESTOP, "FAULT")
+    assert "E-stop" in side.engage()[1]
+    side.estop_reset()
+    for _ in range(3):
+        side.update(watches())
+        assert (side.state, side.engagement) == (State.HOLD, before)
+    assert side.engage()[0] and side.state == State.ENGAGED
+
+
+def test_reset_without_estop_does_nothing():
+    side = engaged()
+    side.estop_reset()
+    assert side.state == State.ENGAGED
+
+
+def test_who_disengages_is_ready_again():
+    side = engaged()
+    side.disengage()
+    assert side.crtk == "DISABLED"
+    side.update(watches())
+    assert (side.state, side.engagement) == (State.READY, 1)
+
+
+def test_crtk_of_the_whole():
+    assert crtk_of_all(["DISABLED", "DISABLED"]) == "DISABLED"
+    assert crtk_of_all(["PAUSED", "DISABLED"]) == "PAUSED"
+    assert crtk_of_all(["PAUSED", "ENABLED"]) == "ENABLED"
+    assert crtk_of_all(["ENABLED", "FAULT"]) == "FAULT"

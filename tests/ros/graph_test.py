@@ -9,6 +9,7 @@ import rosgraph
 import rosnode
 import rospy
 import rostest
+from crtk_msgs.msg import OperatingState, StringStamped
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped, TwistStamped, WrenchStamped
 from saras_ros1.msg import ChannelState, TankState
@@ -44,6 +45,7 @@ TOPICS = {
     "/mesa_{s}/set_point": "geometry_msgs/PoseStamped",
     "/mesa_{s}/tool_command": "sensor_msgs/JointState",
     "/system/{s}/state": "saras_ros1/ChannelState",
+    "/system/operating_state": "crtk_msgs/OperatingState",
     "/diagnostics": "diagnostic_msgs/DiagnosticArray",
 }
 
@@ -259,6 +261,52 @@ class GraphTest(unittest.TestCase):
         self.await_state("left", ChannelState.HOLD)
         self.assertEqual(self.state["right"].message.state, ChannelState.ENGAGED)
         self.engage("left")
+
+    def await_whole(self, state):
+        whole = Newest("/system/operating_state", OperatingState)
+        wait_until(lambda: whole.message is not None and whole.message.state == state, f"the whole {state}")
+
+    def test_11a_estop_stops_all_and_reset_alone_never_moves(self):
+        self.await_whole("ENABLED")
+        self.assertFalse(rospy.ServiceProxy("/system/estop_reset", Trigger)().success)
+        self.assertTrue(rospy.ServiceProxy("/system/estop", Trigger)().success)
+        for side in SIDES:
+            self.await_state(side, ChannelState.HOLD)
+            self.assertIn("E-stop", self.state[side].message.reason)
+            refused = self.call(side, "engage")
+            self.assertFalse(refused.success)
+            self.assertIn("E-stop", refused.message)
+        self.await_whole("FAULT")
+        self.assertTrue(rospy.ServiceProxy("/system/estop_reset", Trigger)().success)
+        self.await_whole("PAUSED")
+        rospy.sleep(0.5)
+        for side in SIDES:
+            self.assertEqual(self.state[side].message.state, ChannelState.HOLD)
+            np.testing.assert_array_equal(convert.twist(self.twist[side].next()), 0.0)
+        self.engage(*SIDES)
+
+    def test_11b_crtk_commands(self):
+        command = rospy.Publisher("/system/state_command", StringStamped, queue_size=20)
+        wait_until(lambda: command.get_num_connections() > 0, "supervisor listens")
+        for word, state in (("pause", "PAUSED"), ("resume", "ENABLED"), ("disable", "DISABLED")):
+            command.publish(StringStamped(string=word))
+            self.await_whole(state)
+        command.publish(StringStamped(string="resume"))
+        wait_until(lambda: any("'resume' is invalid" in m.data for m in self.events.all), "the refusal as an event")
+        for side in SIDES:
+            self.await_state(side, ChannelState.READY)
+        command.unregister()  # publishers of one node and topic share their connections, and how these say "latching"
+        latched = rospy.Publisher("/system/state_command", StringStamped, queue_size=20, latch=True)
+        latched.publish(StringStamped(string="enable"))
+        wait_until(lambda: any("latching" in m.data for m in self.events.all), "an old word is refused")
+        latched.unregister()
+        for side in SIDES:
+            self.assertEqual(self.state[side].message.state, ChannelState.READY)
+        command = rospy.Publisher("/system/state_command", StringStamped, queue_size=20)
+        wait_until(lambda: command.get_num_connections() > 0, "supervisor listens again")
+        command.publish(StringStamped(string="enable"))
+        for side in SIDES:
+            self.await_state(side, ChannelState.ENGAGED)
 
     def test_12_a_dead_node_in_between_holds(self):
         rosnode.kill_nodes(["/tank_slave"])
