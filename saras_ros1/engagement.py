@@ -33,6 +33,8 @@ class Engagement:
         for side, state in states.items():
             if state is None or state.state not in (ChannelState.READY, ChannelState.HOLD):
                 self._asking_since.pop(side, None)
+            elif "E-stop" in state.reason:
+                self._asking_since.pop(side, None)  # what a person stopped, a person starts
             elif now - self._asking_since.setdefault(side, now) > (SETTLE_S if self.since is None else SETTLE_AGAIN_S):
                 self._asking_since[side] = now
                 self._answer(side, state)
