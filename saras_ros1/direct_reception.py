@@ -103,12 +103,12 @@ class Reception:
         try:
             self._poll.register(number, select.EPOLLIN)
             stream.ended.wait()
-        except OSError:  # closed before it was registered
+        except (OSError, ValueError):  # closed before it was registered
             pass
         finally:
             if self._streams.get(number) is stream:
                 del self._streams[number]
-                with contextlib.suppress(OSError):  # a closed socket has left the poll by itself
+                with contextlib.suppress(OSError, ValueError):  # a closed socket has left the poll by itself
                     self._poll.unregister(number)
 
     def _run(self) -> None:

@@ -5,24 +5,14 @@ No ROS in here, so that tests can walk through it.
 
 from __future__ import annotations
 
-import enum
 import math
 from typing import NamedTuple
 
-from saras.safety import CrtkState, SafetyEvent, SafetySign, SafetyState, crtk_state, event_of, next_state
+from saras.safety import CrtkState, SafetyEvent, SafetySign, crtk_state, event_of, next_state
+from saras.safety import SafetyState as State
 
 # One console, so no lease yet: who asks is the holder. The tracked pose is referenced at engagement: always aligned.
 _ASKED = int(SafetySign.ENGAGE_ASKED) | int(SafetySign.HOLDER_ASKS) | int(SafetySign.ALIGNED)
-
-
-class State(enum.IntEnum):
-    """The first four have the numbers of saras_ros1/ChannelState; ESTOP goes out as HOLD."""
-
-    WAITING = 0
-    READY = 1
-    ENGAGED = 2
-    HOLD = 3
-    ESTOP = 4
 
 
 class Watch(NamedTuple):
@@ -124,7 +114,7 @@ class SideSupervisor:
     @property
     def crtk(self) -> str:
         """CRTK's name of this state."""
-        return crtk_state(SafetyState(int(self.state))).name
+        return crtk_state(self.state).name
 
     def _stop(self, event: SafetyEvent, reason: str, advice: str) -> None:
         self._auto = self._auto and event in (SafetyEvent.LOST, SafetyEvent.FAULT)
@@ -132,7 +122,7 @@ class SideSupervisor:
         self.reason, self.advice = reason, advice
 
     def _take(self, event: SafetyEvent) -> None:
-        self.state = State(int(next_state(SafetyState(int(self.state)), event)))
+        self.state = next_state(self.state, event)
 
 
 def crtk_of_all(names: list[str]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from typing import Any
@@ -73,7 +74,7 @@ class Status:
         if state is None or not state.tools:
             return "distances unknown"
         unknown = [tool.name for tool in state.tools if tool.state == 0]
-        known = [tool for tool in state.tools if tool.known_distance == tool.known_distance]
+        known = [tool for tool in state.tools if math.isfinite(tool.known_distance)]
         words = f"distances unknown: {' '.join(unknown)}" if unknown else "nearest"
         if known:
             least = min(known, key=lambda tool: tool.known_distance)
@@ -88,7 +89,7 @@ class Status:
             return table
         for tool in state.tools:
             name = Text(DISTANCE_STATES.get(tool.state, "?"), style=_DISTANCE_STYLE.get(tool.state, ""))
-            known = tool.known_distance == tool.known_distance
+            known = math.isfinite(tool.known_distance)
             distance: Any = f"{1e3 * tool.known_distance:.1f}" if known else UNKNOWN
             table.add_row(tool.name, name, distance, tool.partner)
         return table

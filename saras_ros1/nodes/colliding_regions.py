@@ -20,6 +20,7 @@ from saras_ros1.live_frames import LiveFrames, UnknownFrameError
 from saras_ros1.msg import CollisionState
 from saras_ros1.node import Node, Tick, run
 
+NO_REGIONS = "none"  # to be said: a forgotten file must not look like a patient without bones
 # The order of /collision/distances, from the source document.
 FIRST_FOUR = ("mesa_left", "mesa_right", "PSM1", "PSM2")
 
@@ -51,15 +52,15 @@ class CollidingRegions(Node):
         self.every(1.0 / markers_hz, self._draw)
 
     def _load_regions(self) -> ForbiddenRegions:
-        path = self.params.text("regions_file", empty=True)
+        path = self.params.text("regions_file")
         scale = self.params.number("regions_scale", 1e-9, 1e9)
         rotation = self.params.vector("regions_rotation", 9, -1.0, 1.0).reshape(3, 3)
         offset_m = self.params.vector("regions_offset_m", 3)
-        if not path:
-            rospy.logwarn("regions_file is empty: no forbidden region is watched")
+        if path == NO_REGIONS:
+            rospy.logwarn(f"regions_file = {NO_REGIONS}: no forbidden region is watched")
             return ForbiddenRegions((), np.zeros((0, 8, 3)))
         if not Path(path).is_absolute():  # roslaunch starts nodes in a directory of its own
-            raise ConfigError(f"regions_file = {path!r}: must be an absolute path")
+            raise ConfigError(f"regions_file = {path!r}: must be an absolute path, or {NO_REGIONS}")
         try:
             return ForbiddenRegions.load(path, scale, rotation, offset_m)
         except OSError as error:

@@ -79,7 +79,7 @@ class Side:
         """Publishes now, logs, and leaves an event."""
         self.publish()
         text = f"{self.side}: {self.table.state.name}: {self.table.reason}"
-        (rospy.logerr if self.table.state >= State.HOLD else rospy.loginfo)(text)
+        (rospy.logerr if self.table.state in (State.HOLD, State.ESTOP) else rospy.loginfo)(text)
         self.node.event(text)
         self.node.commands.publish()
 

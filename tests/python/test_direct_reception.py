@@ -6,13 +6,13 @@ from types import SimpleNamespace
 
 import pytest
 
-pytest.importorskip("rospy")
+rospy = pytest.importorskip("rospy")
 from hypothesis import given
 from hypothesis import strategies as st
 from rospy.impl.tcpros_base import BytesIO
 from std_msgs.msg import String
 
-from saras_ros1.direct_reception import Stream
+from saras_ros1.direct_reception import Reception, Stream
 
 
 def framed(text):
@@ -60,7 +60,8 @@ def test_of_those_that_came_together_the_newest_are_kept(texts, queue_size):
     assert got == [texts[-queue_size:]]
 
 
-def test_a_message_that_cannot_be_read_does_not_end_the_stream():
+def test_a_message_that_cannot_be_read_does_not_end_the_stream(monkeypatch):
+    monkeypatch.setattr(rospy, "logerr_throttle", lambda *_: None)  # asks the time of a node, and there is none
     reader, got, _ = stream()
     reader.take(struct.pack("<I", 2) + b"xx" + framed("after"))
     assert got == [["after"]]
@@ -87,3 +88,12 @@ def test_a_closed_peer_ends_the_stream():
     assert reader.ended.is_set()
     assert transport.stat_bytes == len(framed("last"))
     ours.close()
+
+
+def test_a_socket_that_is_closed_already_ends_at_once():
+    ours, theirs = socket.socketpair()
+    reader, got, _ = stream(leftover=framed("early"), sock=ours)
+    ours.close()
+    theirs.close()
+    Reception().serve(reader)
+    assert got == [["early"]]

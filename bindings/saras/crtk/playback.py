@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from saras import Error
 from saras.recording.bag import Bag, Topic
+from saras.recording.series import rotation_matrices
 
 Array = npt.NDArray[np.float64]
 
@@ -63,15 +64,16 @@ def _from_poses(topic: Topic, kinematics: Any, count: int) -> tuple[Array, Array
     else:  # CRTK before 2022
         where, turn = "transform.translation", "transform.rotation"
     points = np.column_stack([topic[f"{where}.{axis}"] for axis in "xyz"])
-    quaternions = np.column_stack([topic[f"{turn}.{axis}"] for axis in "xyzw"])
+    poses = np.tile(np.eye(4), (len(points), 1, 1))
+    poses[:, :3, :3] = rotation_matrices(*(topic[f"{turn}.{axis}"] for axis in "xyzw"))
+    poses[:, :3, 3] = points
     rows, times = [], []
     near = np.asarray(kinematics.limits).mean(axis=1)
-    for t, point, quaternion in zip(topic.t, points, quaternions):
+    for t, pose in zip(topic.t, poses):
         try:
-            solution = (kinematics.inverse(_pose(point, quaternion), near, *((np.pi,) if count == 4 else ())),)
+            near = kinematics.inverse(pose, near, *((np.pi,) if count == 4 else ()))
         except Error:
             continue  # outside the limits of this body or tool: the motion goes on without it
-        near = solution[0]
         rows.append(near)
         times.append(t)
     if not rows:
@@ -84,18 +86,6 @@ def _from_poses(topic: Topic, kinematics: Any, count: int) -> tuple[Array, Array
 def _increasing(t: Array, q: Array) -> tuple[Array, Array]:
     keep = np.concatenate([[True], np.diff(np.maximum.accumulate(t)) > 0.0]) & np.isfinite(q).all(axis=1)
     return t[keep], q[keep]
-
-
-def _pose(point: Array, quaternion: Array) -> Array:
-    x, y, z, w = quaternion / np.linalg.norm(quaternion)
-    pose = np.eye(4)
-    pose[:3, :3] = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-    ]
-    pose[:3, 3] = point
-    return pose
 
 
 __all__ = ["Playback"]

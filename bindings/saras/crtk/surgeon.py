@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from saras.console.motion import minimum_jerk
+
 Array = npt.NDArray[np.float64]
 
 MODES = ("rest", "circle", "reach", "meet")
@@ -47,7 +49,7 @@ class Surgeon:
             k, share = divmod(t / REACH_S, 1.0)
             points = self._targets[name]
             begin = points[int(k - 1) % len(points)] if k >= 1.0 else np.zeros(3)
-            return np.asarray(home + begin + _smooth(share) * (points[int(k) % len(points)] - begin))
+            return np.asarray(home + begin + minimum_jerk(share)[0] * (points[int(k) % len(points)] - begin))
         k, share = divmod(t, sum(MEET_S))
         towards, there, back, _ = MEET_S
         to_tool = (int(k) + (1 if name.endswith("2") else 0)) % 2 == 0
@@ -59,11 +61,11 @@ class Surgeon:
         if length <= self.closest_m:
             return home
         if share < towards:
-            part = _smooth(share / towards)
+            part = minimum_jerk(share / towards)[0]
         elif share < towards + there:
             part = 1.0
         else:
-            part = 1.0 - _smooth(min(1.0, (share - towards - there) / back))
+            part = 1.0 - minimum_jerk(min(1.0, (share - towards - there) / back))[0]
         return np.asarray(home + part * (1.0 - self.closest_m / length) * way)
 
 
@@ -80,11 +82,6 @@ def joints_for_tip(kinematics: Any, base_T_world: Array, tip: Array, roll: float
     q[0], q[1], q[3] = math.atan2(x, -z), math.asin(max(-1.0, min(1.0, -y / depth))), roll
     q[2] = depth - float(kinematics.forward(q)[:3, 3] @ kinematics.shaft(q))
     return q
-
-
-def _smooth(share: float) -> float:
-    """Minimum jerk from 0 to 1."""
-    return share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
 
 
 __all__ = ["MODES", "Surgeon", "joints_for_tip"]
