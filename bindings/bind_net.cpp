@@ -11,14 +11,6 @@
 namespace saras::bindings {
 namespace {
 
-/// Nested structs are handed out by reference, so that packet.left.grip = 0.5 sets the packet.
-template <typename Owner, typename Member, typename S>
-void nested(S& bound, const char* name, Member Owner::*member, const char* doc) {
-  bound.field(
-      name, [member](Owner& self) -> Member& { return self.*member; },
-      [member](Owner& self, const Member& value) { self.*member = value; }, doc);
-}
-
 template <typename Bytes>
 py::bytes to_bytes(const Bytes& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};

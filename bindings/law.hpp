@@ -107,4 +107,12 @@ class Struct {
   std::shared_ptr<std::vector<AppendField>> numbers_ = std::make_shared<std::vector<AppendField>>();
 };
 
+/// Nested structs are handed out by reference, so that packet.left.grip = 0.5 sets the packet.
+template <typename Owner, typename Member, typename S>
+void nested(S& bound, const char* name, Member Owner::*member, const char* doc) {
+  bound.field(
+      name, [member](Owner& self) -> Member& { return self.*member; },
+      [member](Owner& self, const Member& value) { self.*member = value; }, doc);
+}
+
 }  // namespace saras::bindings

@@ -19,4 +19,6 @@ PYBIND11_MODULE(_core, m) {
   saras::bindings::bind_safety(safety);
   auto console = m.def_submodule("console", "What the console program steps at device rate");
   saras::bindings::bind_console(console);
+  auto pipeline = m.def_submodule("pipeline", "Both sides of the teleoperation in one step");
+  saras::bindings::bind_pipeline(pipeline);
 }

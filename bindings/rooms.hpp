@@ -13,5 +13,6 @@ void bind_sim(pybind11::module_& m);
 void bind_net(pybind11::module_& m);
 void bind_safety(pybind11::module_& m);
 void bind_console(pybind11::module_& m);
+void bind_pipeline(pybind11::module_& m);
 
 }  // namespace saras::bindings

@@ -14,6 +14,7 @@ from . import sim
 from . import net
 from . import safety
 from . import console
+from . import pipeline
 
 __all__: list[str] = [
     "ConfigError",
@@ -27,6 +28,7 @@ __all__: list[str] = [
     "displacement",
     "kinematics",
     "net",
+    "pipeline",
     "safety",
     "sim",
     "teleop",

@@ -99,6 +99,8 @@ class Experiment:
     up, down: the console's link, one way each (each side draws from its own seed). exchange: the link between
     tank_master and tank_slave, each way. guard_jitter: relative jitter of the device's period (0.3 = +-30 %).
     graph_jitter: probability that a graph tick comes one device period late.
+    controller: ``laws`` (the separate graph's, one by one) or ``pipeline`` (the real-time host's; ``exchange`` does not
+    apply, a restart ends both tanks, all sides take their wrench from the source of the first).
     """
 
     sides: tuple[Side, ...] = field(default_factory=lambda: (Side(),))
@@ -122,6 +124,7 @@ class Experiment:
     integrator: VelocityIntegratorConfig = field(default_factory=integrator)
     restarts: tuple[Restart, ...] = ()
     adversary: Adversary | None = None
+    controller: str = "laws"
 
     def __post_init__(self) -> None:
         """Refuse what makes no experiment; the laws' own configurations are validated by the laws."""
@@ -135,6 +138,10 @@ class Experiment:
             raise ValueError(
                 f"guard_rate_hz = {self.guard_rate_hz}: must not be below graph_rate_hz = {self.graph_rate_hz}"
             )
+        if self.controller not in ("laws", "pipeline"):
+            raise ValueError(f"controller = {self.controller!r}: must be laws or pipeline")
+        if self.controller == "pipeline":
+            self._check_pipeline()
         if not 0.0 <= self.guard_jitter < 1.0:
             raise ValueError(f"guard_jitter = {self.guard_jitter}: must be in [0, 1)")
         for side in self.sides:
@@ -145,3 +152,9 @@ class Experiment:
                 raise ValueError(
                     f"restart = {restart}: tank must be guard, tank_master or tank_slave, side one of the sides"
                 )
+
+    def _check_pipeline(self) -> None:
+        if len(self.sides) > 2 or not self.tanks:
+            raise ValueError(f"controller = pipeline: has tanks and at most 2 sides, not {len(self.sides)}")
+        if self.adversary is not None and (self.adversary.tip_gain_m_N_s or self.adversary.noise_m_s):
+            raise ValueError("controller = pipeline: an adversary at the tip has no place in it: must be 0")

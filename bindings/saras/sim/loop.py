@@ -14,6 +14,7 @@ from saras.sim.console import Console, DownMessage, UpMessage
 from saras.sim.exchange import EnergyBook, ExchangeMessage
 from saras.sim.experiment import Experiment, Restart
 from saras.sim.link import Link
+from saras.sim.pipeline_platform import PipelinePlatform
 from saras.sim.platform import Platform
 from saras.sim.result import Recorder, Result
 
@@ -53,7 +54,11 @@ class _Loop:
             Link(_with_seed(experiment.exchange, seed + 6)),
             Link(_with_seed(experiment.exchange, seed + 7)),
         )
-        self.platform = Platform(experiment, self.arms, self.exchange)
+        self.platform: Platform | PipelinePlatform = (
+            Platform(experiment, self.arms, self.exchange)
+            if experiment.controller == "laws"
+            else PipelinePlatform(experiment, self.arms)
+        )
         self.restarts = sorted(experiment.restarts, key=lambda r: r.time_s, reverse=True)
         self.recorder = Recorder(experiment, self.t)
 

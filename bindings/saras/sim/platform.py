@@ -19,7 +19,7 @@ BRIDGED_TICKS = 2
 """Graph ticks without a pose over which the last command is kept; then it is zero."""
 
 
-def _servo_model(side: Side) -> DisturbanceObserverConfig:
+def servo_model(side: Side) -> DisturbanceObserverConfig:
     """Of the arm, where all joints are alike; else of its first joint."""
     return DisturbanceObserverConfig(
         natural_frequency_rad_s=float(side.arm.natural_frequency_rad_s[0]),
@@ -37,7 +37,7 @@ class PlatformSide:
         self.mapping = FrameMapping(experiment.mapping)
         self.transparency = Transparency(experiment.transparency)
         self.integrator = VelocityIntegrator(experiment.integrator)
-        self._observer = None if side.slave_wrench == "truth" else DisturbanceObserver(_servo_model(side))
+        self._observer = None if side.slave_wrench == "truth" else DisturbanceObserver(servo_model(side))
         self.wrench_known = True
         self._timeout_s = experiment.console_timeout_s
         self._unseen = 0

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from saras.sim.arm_side import ArmSide
     from saras.sim.console import Console
     from saras.sim.experiment import Experiment
+    from saras.sim.pipeline_platform import PipelinePlatform
     from saras.sim.platform import Platform
 
 Array = npt.NDArray[np.float64]
@@ -104,10 +105,13 @@ class Recorder:
         self._graph_ticks: list[int] = []
         self._books: list[list[EnergyBook]] = []
 
-    def record(self, k: int, consoles: list[Console], arms: list[ArmSide], platform: Platform) -> None:
+    def record(
+        self, k: int, consoles: list[Console], arms: list[ArmSide], platform: Platform | PipelinePlatform
+    ) -> None:
         """One device tick."""
         v = self._vectors
-        for i, (console, arm, side) in enumerate(zip(consoles, arms, platform.sides)):
+        sides: Sequence[PlatformSide | PipelineSide] = platform.sides
+        for i, (console, arm, side) in enumerate(zip(consoles, arms, sides)):
             v["hand"][k, i] = console.position
             v["intended"][k, i] = console.intended[k]
             v["hand_force"][k, i] = console.applied[:3]

@@ -24,6 +24,8 @@ class LedgerSender {
   /// The message to put on the wire now; each call counts up seq.
   LedgerMessage next() noexcept;
   const LedgerMessage& last() const { return message_; }
+  /// Continues from a recorded sum.
+  void reset(const LedgerMessage& message) { message_ = message; }
 
  private:
   LedgerMessage message_;
