@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
@@ -15,8 +16,8 @@ if TYPE_CHECKING:
     from saras.sim.arm_side import ArmSide
     from saras.sim.console import Console
     from saras.sim.experiment import Experiment
-    from saras.sim.pipeline_platform import PipelinePlatform
-    from saras.sim.platform import Platform
+    from saras.sim.pipeline_platform import PipelinePlatform, PipelineSide
+    from saras.sim.platform import Platform, PlatformSide
 
 Array = npt.NDArray[np.float64]
 
