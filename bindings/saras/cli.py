@@ -22,6 +22,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "regions": ("saras.collision.command", "make forbidden regions from a bone's mesh, or check a file of them"),
     "replay": ("saras.replay", "run the laws again on recorded inputs and compare"),
     "report": ("saras.report.command", "write the HTML report of a recorded session"),
+    "udp-proxy": ("saras.sim.udp_proxy_command", "an impaired network between a console and the platform"),
 }
 
 #: import name of an optional library: what to install

@@ -1,23 +1,20 @@
-"""An impaired network in user space: forwards datagrams between two UDP peers over the same Channel as the experiments.
+"""An impaired network in user space: forwards datagrams between two UDP peers, over the experiments' Channel.
 
-    python -m saras.sim.udp_proxy --listen 48110 --to 127.0.0.1:48010 --delay-ms 100 --loss 0.1
-
-The client sends to ``--listen``; the proxy forwards to ``--to`` from a port of its own, and what comes back goes to the
-client's last address. Both directions have the same impairments and draw from their own seeds.
+The client sends to the proxy; the proxy forwards to the server from a socket of its own, and what comes back goes to
+the client's last address. Both directions have the same impairments and draw from their own seeds. As a program with
+control over its standard input: ``saras udp-proxy`` (saras.sim.udp_proxy_command).
 """
 
 from __future__ import annotations
 
-import argparse
 import asyncio
-import contextlib
 import copy
-import json
 import math
 import sys
 from collections.abc import Callable
 
 from saras._core.sim import ChannelConfig, ChannelCounters
+from saras.sim.datagram_faults import DatagramFaults
 from saras.sim.link import Link
 
 Address = tuple[str, int]
@@ -25,20 +22,38 @@ Address = tuple[str, int]
 LOCALHOST = "127.0.0.1"
 
 
-class _Direction:
-    """One way: a link, and a timer for its next arrival."""
+class Direction:
+    """One way: faults counted in datagrams, then a link, and a timer for its next arrival."""
 
     def __init__(self, config: ChannelConfig, deliver: Callable[[bytes], None]) -> None:
         self.link: Link[bytes] = Link(config)
+        self.faults = DatagramFaults(config.seed)
         self._deliver = deliver
         self._loop = asyncio.get_running_loop()
         self._timer: asyncio.TimerHandle | None = None
 
     def accept(self, datagram: bytes) -> None:
-        self.link.send(datagram, self._loop.time())
+        """A datagram of this direction's sender."""
+        for each in self.faults.pass_on(datagram):
+            self.link.send(each, self._loop.time())
+        self.flush()
+
+    def replay(self, count: int) -> int:
+        """Sends the newest ``count`` recorded datagrams once more, at once; returns how many there were."""
+        recorded = self.faults.recorded(count)
+        for datagram in recorded:
+            self._deliver(datagram)
+        return len(recorded)
+
+    def impair(self, config: ChannelConfig) -> None:
+        """From now on these impairments; what is under way comes at once."""
+        for datagram in self.link.receive(math.inf):
+            self._deliver(datagram)
+        self.link = Link(config)
         self.flush()
 
     def flush(self) -> None:
+        """Delivers what is due and sets the timer for the rest."""
         for datagram in self.link.receive(self._loop.time()):
             self._deliver(datagram)
         self.close()
@@ -47,6 +62,7 @@ class _Direction:
             self._timer = self._loop.call_at(due, self.flush)
 
     def close(self) -> None:
+        """Stops the timer."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
@@ -74,18 +90,24 @@ class UdpProxy:
         self._client: Address | None = None
         self._front: asyncio.DatagramTransport | None = None
         self._back: asyncio.DatagramTransport | None = None
-        back_config = copy.copy(config)
-        back_config.seed = config.seed + 1
-        self._up = _Direction(config, self._to_server)
-        self._down = _Direction(back_config, self._to_client)
+        self.up = Direction(config, self._to_server)
+        self.down = Direction(_for_down(config), self._to_client)
 
     @classmethod
-    async def start(cls, listen: Address, server: Address, config: ChannelConfig | None = None) -> UdpProxy:
-        """Open both sockets; port 0 listens on a free port (``address``)."""
+    async def start(
+        cls, listen: Address, server: Address, config: ChannelConfig | None = None, send_from: Address | None = None
+    ) -> UdpProxy:
+        """Open both sockets; port 0 listens on a free port (``address``).
+
+        ``send_from``: where the server is sent from, for a server that answers to a fixed address (the platform's
+        console_host and console_port) instead of the sender's.
+        """
         proxy = cls(server, config if config is not None else ChannelConfig())
         loop = asyncio.get_running_loop()
         proxy._front, _ = await loop.create_datagram_endpoint(lambda: _Endpoint(proxy._from_client), local_addr=listen)
-        proxy._back, _ = await loop.create_datagram_endpoint(lambda: _Endpoint(proxy._from_server), remote_addr=server)
+        proxy._back, _ = await loop.create_datagram_endpoint(
+            lambda: _Endpoint(proxy._from_server), local_addr=send_from, remote_addr=server
+        )
         return proxy
 
     @property
@@ -98,24 +120,29 @@ class UdpProxy:
     @property
     def counters(self) -> tuple[ChannelCounters, ChannelCounters]:
         """What the channels did: client to server, server to client."""
-        return self._up.link.counters, self._down.link.counters
+        return self.up.link.counters, self.down.link.counters
 
     def blackout(self, seconds: float) -> None:
         """Lose everything, both ways, for some seconds from now."""
         until = asyncio.get_running_loop().time() + seconds
-        self._up.link.blackout_until(until)
-        self._down.link.blackout_until(until)
+        self.up.link.blackout_until(until)
+        self.down.link.blackout_until(until)
 
     def hold(self, seconds: float) -> None:
         """Keep everything back for some seconds from now, then release it at once."""
         until = asyncio.get_running_loop().time() + seconds
-        for direction in (self._up, self._down):
+        for direction in (self.up, self.down):
             direction.link.hold_until(until)
             direction.flush()
 
+    def impair(self, config: ChannelConfig) -> None:
+        """From now on these impairments in both directions."""
+        self.up.impair(config)
+        self.down.impair(_for_down(config))
+
     def close(self) -> None:
         """Close the sockets and drop what is under way."""
-        for direction in (self._up, self._down):
+        for direction in (self.up, self.down):
             direction.close()
         for transport in (self._front, self._back):
             if transport is not None:
@@ -123,10 +150,10 @@ class UdpProxy:
 
     def _from_client(self, data: bytes, address: Address) -> None:
         self._client = address
-        self._up.accept(data)
+        self.up.accept(data)
 
     def _from_server(self, data: bytes, _address: Address) -> None:
-        self._down.accept(data)
+        self.down.accept(data)
 
     def _to_server(self, data: bytes) -> None:
         if self._back is not None and not self._back.is_closing():
@@ -137,60 +164,20 @@ class UdpProxy:
             self._front.sendto(data, self._client)
 
 
+def _for_down(config: ChannelConfig) -> ChannelConfig:
+    """The same impairments, drawn anew."""
+    other = copy.copy(config)
+    other.seed = config.seed + 1
+    return other
+
+
 def parse_address(text: str) -> Address:
     """``48010`` or ``host:48010``."""
     host, _, port = text.rpartition(":")
     return host or LOCALHOST, int(port)
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="python -m saras.sim.udp_proxy", description=__doc__.split("\n")[0])
-    parser.add_argument(
-        "--listen", type=parse_address, required=True, metavar="[HOST:]PORT", help="the client sends here"
-    )
-    parser.add_argument("--to", type=parse_address, required=True, metavar="[HOST:]PORT", help="the server")
-    parser.add_argument("--delay-ms", type=float, default=0.0, help="one way")
-    parser.add_argument("--jitter-ms", type=float, default=0.0)
-    parser.add_argument("--loss", type=float, default=0.0, help="probability, 0 to 1")
-    parser.add_argument("--duplicate", type=float, default=0.0, help="probability, 0 to 1")
-    parser.add_argument("--reorder", type=float, default=0.0, help="probability, 0 to 1")
-    parser.add_argument("--reorder-ms", type=float, default=20.0, help="how late an overtaken datagram comes")
-    parser.add_argument("--burst-rate-hz", type=float, default=0.0, help="how often a loss burst begins")
-    parser.add_argument("--burst-ms", type=float, default=100.0, help="how long it lasts")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--duration", type=float, default=math.inf, help="seconds; for ever by default")
-    return parser
-
-
-async def _serve(arguments: argparse.Namespace) -> None:
-    config = ChannelConfig(
-        delay_s=arguments.delay_ms * 1e-3,
-        jitter_s=arguments.jitter_ms * 1e-3,
-        loss=arguments.loss,
-        duplicate=arguments.duplicate,
-        reorder=arguments.reorder,
-        reorder_s=arguments.reorder_ms * 1e-3,
-        burst_rate_hz=arguments.burst_rate_hz,
-        burst_s=arguments.burst_ms * 1e-3,
-        seed=arguments.seed,
-    )
-    proxy = await UdpProxy.start(arguments.listen, arguments.to, config)
-    print("{}:{}".format(*proxy.address), flush=True)
-    try:
-        await asyncio.sleep(arguments.duration if math.isfinite(arguments.duration) else 1e9)
-    finally:
-        up, down = proxy.counters
-        proxy.close()
-        fields = ("sent", "lost", "duplicated", "reordered", "delivered")
-        print(json.dumps({n: {f: getattr(c, f) for f in fields} for n, c in (("up", up), ("down", down))}), flush=True)
-
-
-def main() -> int:
-    """Run until interrupted; print the address first and the counters last."""
-    with contextlib.suppress(KeyboardInterrupt):
-        asyncio.run(_serve(_parser().parse_args()))
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    from saras.cli import main
+
+    sys.exit(main(["udp-proxy", *sys.argv[1:]]))
