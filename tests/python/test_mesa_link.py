@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import os
 import signal
 import time
@@ -272,3 +273,22 @@ def test_each_reader_gets_the_rate_and_truth_that_it_asks_for() -> None:
             eventually(lambda: len(ticks) > 10 and len(truths) > 3, "states and truths")
         assert all(tick % 4 == 0 for tick in ticks) and all(truth.tick % 10 == 0 for truth in truths)
         assert every.stats().states > len(ticks)
+
+
+def test_the_arms_log_says_what_was_taken_and_what_was_not(tmp_path) -> None:
+    async def scenario(url: str) -> None:
+        async with RawClient() as raw:
+            session = await raw.connect(url)
+            assert await raw.target(Header(session, 1, raw.ticks[-1], 0.15)) == "ok"
+            assert await raw.target(Header(session, 1, raw.ticks[-1], 0.15)) == Reason.REPLAYED
+
+    with arm(log=tmp_path / "arm.jsonl") as server:
+        asyncio.run(scenario(server.url))
+    lines = [json.loads(line) for line in (tmp_path / "arm.jsonl").read_text().splitlines()]
+    (taken,) = [line for line in lines if "command" in line and "refused" not in line]
+    (refused,) = [line for line in lines if "refused" in line]
+    ticks = [line["tick"] for line in lines if "tick" in line]
+    assert (taken["command"], taken["seq"], tuple(taken["position"])) == ("set_target", 1, HOME.position)
+    assert (refused["refused"], refused["command"], refused["seq"]) == (Reason.REPLAYED, "set_target", 1)
+    assert ticks == list(range(1, len(ticks) + 1))
+    assert lines == sorted(lines, key=lambda line: line["t_s"])

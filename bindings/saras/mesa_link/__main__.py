@@ -9,6 +9,7 @@ import gc
 import signal
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 
 from saras import Error
 from saras.mesa_link.scene import simulated_arm
@@ -26,6 +27,7 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
     parser.add_argument("--state-rate", type=float, default=200.0, help="states a second [Hz]")
     parser.add_argument("--no-tissue", action="store_true", help="free space")
     parser.add_argument("--force-sensor", action="store_true", help="report the wrench at the tip (the arm has none)")
+    parser.add_argument("--log", type=Path, metavar="FILE", help="write each command and tick to FILE as JSON lines")
     parser.add_argument("--allow-faults", action="store_true", help="obey the event `inject` (tests)")
     return parser.parse_args(arguments)
 
@@ -41,6 +43,7 @@ async def serve(options: argparse.Namespace) -> None:
         options.host,
         state_rate_hz=options.state_rate,
         allow_faults=options.allow_faults,
+        log=options.log,
     )
     server = ArmServer(config, plant)
     await server.start()

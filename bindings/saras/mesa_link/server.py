@@ -11,6 +11,7 @@ import json
 import time
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import socketio
@@ -18,6 +19,7 @@ from aiohttp import web
 
 from saras import ConfigError
 from saras.mesa_link import wire_json
+from saras.mesa_link.arm_log import ArmLog
 from saras.mesa_link.commands import CommandTable
 from saras.mesa_link.faults import FaultInjector
 from saras.mesa_link.fields import MessageError
@@ -46,6 +48,7 @@ class ArmServerConfig:
     ping_interval_s: float = 2.0  # a client that answers no ping for interval + timeout is dropped
     ping_timeout_s: float = 4.0
     allow_faults: bool = False
+    log: Path | None = None  # where commands and ticks are written, see arm_log
     gate: GateConfig = field(default_factory=GateConfig)
 
     def __post_init__(self) -> None:
@@ -83,6 +86,7 @@ class ArmServer:
         self.gate = CommandGate(config.gate, first_session=time.time_ns() // 1_000_000)
         self.commands = CommandTable(plant, self.gate)
         self.faults = FaultInjector()
+        self.log = ArmLog(config.log) if config.log is not None else None
         self.port = config.port
         self.skipped_ticks = 0
         self._plant = plant
@@ -121,6 +125,8 @@ class ArmServer:
         await self._sio.shutdown()
         if self._runner is not None:
             await self._runner.cleanup()
+        if self.log is not None:
+            self.log.close()
 
     async def wait(self) -> None:
         """Return when the loop ends, raise what ended it."""
@@ -151,6 +157,8 @@ class ArmServer:
         self._plant.step(period_s)
         self._tick += 1
         self.gate.note_state(self._tick, now)
+        if self.log is not None:
+            self.log.tick(now, self._tick, following, self._plant.sample())
         state = self.faults.alter(self._state(sample_time_s, period_s))
         if state is not None:
             await self._publish("state", state.to_json, {every for every, _ in self._readers.values()})
@@ -247,11 +255,17 @@ class ArmServer:
 
     def _handler(self, event: str) -> Callable[..., Awaitable[dict[str, Any]]]:
         async def handle(sid: str, data: object = None, *_: object) -> dict[str, Any]:
+            now = time.monotonic()
             try:
-                self.commands.obey(event, sid, data, time.monotonic())
+                self.commands.obey(event, sid, data, now)
             except MessageError as error:
-                seq = data.get("seq") if isinstance(data, dict) else 0
-                return await self._nack(sid, seq if type(seq) is int else 0, error)
+                field = data.get("seq") if isinstance(data, dict) else 0
+                seq = field if type(field) is int else 0
+                if self.log is not None:
+                    self.log.refused(now, event, seq, error.reason)
+                return await self._nack(sid, seq, error)
+            if self.log is not None:
+                self.log.taken(now, event, data)
             return {"ok": True}
 
         return handle
