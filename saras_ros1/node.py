@@ -29,6 +29,7 @@ from typing import Any, Callable
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from rospy.impl.paramserver import get_param_server_cache
 from std_msgs.msg import String
 
 from saras import ConfigError, Error
@@ -61,6 +62,7 @@ class Node:
         direct_reception.install()
         rospy.core.add_preshutdown_hook(_log_shutdown)
         rospy.init_node(name)
+        _log_without_asking()
         self.name = rospy.get_name()
         values = rospy.get_param(self.name, {})
         self.params = Params(values, self.name) if values or needs_params else None
@@ -70,6 +72,7 @@ class Node:
         self.state = "STARTING"
         self.inputs: list[Input] = []
         self.loops: list[Loop] = []
+        self.heard_channels: list[Any] = []  # each Channel of this node
         self._timers: list[tuple[float, Callable[[], None]]] = []
         self._steps_at_last_report: list[int] = []
         self._received_at_last_report: list[int] = []
@@ -97,9 +100,14 @@ class Node:
     def loop(self, step: Callable[[Tick], None], primaries: list[Input], *, period_s: float, name: str = "") -> Loop:
         """Steps on the primary inputs; see Loop. Its heartbeat on /system/heartbeats is "node" or "node/name"."""
         beat = String(self.name.lstrip("/") + (f"/{name}" if name else ""))
-        loop = Loop(step, primaries, period_s, self.lock, lambda: self._heartbeats.publish(beat))
+        loop = Loop(step, primaries, period_s, self.lock, lambda: self._beat(beat))
         self.loops.append(loop)
         return loop
+
+    def _beat(self, beat: String) -> None:
+        """None while an engagement runs that is older than this node: the supervisor is to end it."""
+        if not any(channel.inherited for channel in self.heard_channels):
+            self._heartbeats.publish(beat)
 
     def law(self, name: str, law_class: type, *args: Any) -> Any:
         """Builds a law; its step takes keywords only. With /saras/trace_laws each step goes out on /laws/<name>."""
@@ -201,6 +209,16 @@ def _tick(period_s: float, callback: Callable[[], None]) -> None:
             return
         except Exception as error:
             rospy.logerr_throttle(1.0, f"{rospy.get_name()}: {type(error).__name__}: {error}")
+
+
+def _log_without_asking() -> None:
+    """Lets log lines wait for nobody.
+
+    rospy asks the master for this parameter at every line, as long as nobody has set it: a hung master would stop
+    whoever logs, control threads too, for SOCKET_TIMEOUT_S a line.
+    """
+    name = "/rosout_disable_topics_generation"
+    get_param_server_cache().set(name, bool(rospy.get_param(name, False)))
 
 
 def _log_shutdown(reason: str) -> None:
