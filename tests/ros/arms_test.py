@@ -330,17 +330,29 @@ class Arms(unittest.TestCase):
         count, stopped = left.tip_count, left.tip.copy()
         eventually(lambda: left.tip_count > count + 50, "arm_state goes on")
         self.assertTrue(left.at(stopped, 2e-3))
-        # A new driver takes control and, though still engaged, goes on from the measured pose.
+        # A new driver takes control. It has no part in the engagement that ran before it; the next one starts from the
+        # measured pose.
         left.path.clear()
         again = subprocess.Popen(["rosrun", "saras_ros1", "arm_driver", "__name:=arm_driver_left"])
         try:
+            count = left.tip_count
+            eventually(lambda: self.answers("/mesa_left/brake", "is engaged"), "the new driver answers")
+            self.assertGreater(left.tip_count, count)
+            self.assertTrue(left.at(stopped, 2e-3))
             left.hold()
+            eventually(lambda: self.answers("/mesa_left/brake", "done"), "the new driver sees the HOLD")
             goal = left.engage(0.0, 0.004, 0.0)
             eventually(lambda: left.at(goal), "the new driver's motion")
             self.assertLess(left.largest_step(), 5e-3)
         finally:
             again.terminate()
             again.wait()
+
+    def answers(self, service: str, word: str) -> bool:
+        try:
+            return word in rospy.ServiceProxy(service, SetBool)(True).message
+        except rospy.ServiceException:
+            return False
 
     def test_d3_dead_arm_is_a_fault_and_the_other_goes_on(self) -> None:
         os.kill(sibling("--port 48320"), signal.SIGKILL)
