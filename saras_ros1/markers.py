@@ -15,6 +15,7 @@ TRAIL_POINTS = 150
 ORANGE, BLUE, WHITE = ColorRGBA(1.0, 0.5, 0.1, 1.0), ColorRGBA(0.2, 0.6, 1.0, 0.8), ColorRGBA(1.0, 1.0, 1.0, 1.0)
 # Unknown is grey, never green.
 GREY = ColorRGBA(0.6, 0.6, 0.6, 1.0)
+ENGAGED = 2
 STATE_STYLE = {
     0: ("WAITING", ColorRGBA(1.0, 0.85, 0.2, 1.0)),
     1: ("READY", ColorRGBA(0.3, 0.8, 1.0, 1.0)),
@@ -71,10 +72,12 @@ def trail(namespace: str, frame: str, points: list[Point], colour: ColorRGBA) ->
 def label(namespace: str, frame: str, height_m: float, state: Any | None, energies: dict[str, Any]) -> Marker:
     """State and energies of a side; a grey "?" for what is not known."""
     name, colour = STATE_STYLE.get(state.state, ("?", GREY)) if state is not None else ("?", GREY)
+    if state is not None and state.estop:
+        name = "E-STOP"
     levels = "\n".join(f"{tank} {'?' if s is None else format(s.energy_J, '.2f')} J" for tank, s in energies.items())
     marker = new_marker(namespace, Marker.TEXT_VIEW_FACING, frame, colour, (0.0, 0.0, 0.025))
     marker.pose.position.z = height_m
     marker.text = f"{namespace.split()[0]} {name}\n{levels}"
-    if state is not None and state.state in (0, 3):
-        marker.text += f"\n{state.reason}"
+    if state is not None and state.state != ENGAGED:
+        marker.text += "".join(f"\n{words}" for words in (state.reason, state.advice) if words)
     return marker

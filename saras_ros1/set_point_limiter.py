@@ -1,23 +1,41 @@
-"""The last check on a set-point before it goes to the arm."""
+"""The last check on a set-point before it goes to the arm: reach, speed, acceleration."""
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
+import numpy.typing as npt
 
 from saras import ConfigError, add_delta, displacement
 
+Array = npt.NDArray[np.float64]
+
 
 class SetPointLimiter:
-    """Steps at most speed · dt towards the set-point; refuses one that is too far away to be a motion.
+    """Steps towards the set-point within speed and acceleration; refuses one that is too far away to be a motion.
 
-    speed_m_s, speed_rad_s: largest speed of what is sent; reach_m, reach_rad: a set-point further than this from the
-    last one sent is refused. Poses are (4, 4) in one frame.
+    speed_m_s, speed_rad_s, acceleration_m_s2, acceleration_rad_s2: largest of what is sent; reach_m, reach_rad: a
+    set-point further than this from the last one sent is refused. A set-point that moves within these is sent as it
+    is; after one that does not, what is sent brakes in time (the discrete stopping speed). Poses are (4, 4) in one
+    frame, translation and rotation are bounded each by itself.
     """
 
-    def __init__(self, speed_m_s: float, speed_rad_s: float, reach_m: float, reach_rad: float, dt_max_s: float) -> None:
+    def __init__(
+        self,
+        speed_m_s: float,
+        speed_rad_s: float,
+        acceleration_m_s2: float,
+        acceleration_rad_s2: float,
+        reach_m: float,
+        reach_rad: float,
+        dt_max_s: float,
+    ) -> None:
         limits = {
             "speed_m_s": speed_m_s,
             "speed_rad_s": speed_rad_s,
+            "acceleration_m_s2": acceleration_m_s2,
+            "acceleration_rad_s2": acceleration_rad_s2,
             "reach_m": reach_m,
             "reach_rad": reach_rad,
             "dt_max_s": dt_max_s,
@@ -25,18 +43,26 @@ class SetPointLimiter:
         for name, value in limits.items():
             if not 0.0 < value < np.inf:
                 raise ConfigError(f"{name} = {value}: must be > 0 and finite")
-        self._speed = (speed_m_s, speed_rad_s)
+        self._bounds = ((speed_m_s, acceleration_m_s2), (speed_rad_s, acceleration_rad_s2))
         self._reach = (reach_m, reach_rad)
         self._dt_max_s = dt_max_s
-        self.last: np.ndarray | None = None
+        self._velocity = (np.zeros(3), np.zeros(3))
+        self.last: Array | None = None
         self.limited = 0
 
-    def start(self, measured: np.ndarray) -> None:
-        """The next step goes from the measured pose."""
+    def start(self, measured: Array) -> None:
+        """The next step goes from the measured pose, from rest."""
         self.last = measured
+        self._velocity = (np.zeros(3), np.zeros(3))
 
-    def step(self, set_point: np.ndarray, dt: float) -> np.ndarray:
-        """What to send; ValueError when the set-point is out of reach. dt [s] since the last step, monotonic."""
+    def step(self, set_point: Array, dt: float) -> Array:
+        """What to send; ValueError when the set-point is not finite or out of reach.
+
+        dt [s] since the last step, monotonic; one beyond dt_max_s counts as that, none or less moves nothing.
+        """
+        if not np.isfinite(set_point).all():
+            raise ValueError("set-point is not finite")
+        assert self.last is not None, "start() comes first"
         delta = displacement(self.last, set_point)
         sizes = (float(np.linalg.norm(delta[:3])), float(np.linalg.norm(delta[3:])))
         if sizes[0] > self._reach[0] or sizes[1] > self._reach[1]:
@@ -44,10 +70,33 @@ class SetPointLimiter:
                 f"set-point {1e3 * sizes[0]:.1f} mm and {sizes[1]:.3f} rad from the last one sent, "
                 f"limits {1e3 * self._reach[0]:g} mm and {self._reach[1]:g} rad"
             )
-        dt = min(max(dt, 0.0), self._dt_max_s)
-        part = min([1.0] + [speed * dt / size for speed, size in zip(self._speed, sizes) if size > 0.0])
-        if part < 1.0:
+        dt = min(dt, self._dt_max_s)
+        if not dt > 0.0:
+            return self.last
+        parts = (delta[:3], delta[3:])
+        self._velocity = tuple(
+            _towards(part, before, *bounds, dt) for part, before, bounds in zip(parts, self._velocity, self._bounds)
+        )
+        sent = np.concatenate(self._velocity)
+        if np.linalg.norm(sent * dt - delta) <= 1e-12:
+            self.last = set_point
+        else:
             self.limited += 1
-            set_point = add_delta(self.last, delta, part)
-        self.last = set_point
-        return set_point
+            self.last = add_delta(self.last, sent, dt)
+        return self.last
+
+
+def _towards(delta: Array, before: Array, speed: float, acceleration: float, dt: float) -> Array:
+    """Velocity of this step; |velocity| <= speed and |velocity - before| <= acceleration dt, in every case."""
+    wanted = delta / dt
+    size = float(np.linalg.norm(wanted))
+    change_limit = acceleration * dt
+    if size <= speed and np.linalg.norm(wanted - before) <= change_limit:
+        return wanted
+    if size > 0.0:
+        # The largest speed from which steps of falling speed end where they should: n (n + 1) / 2 of a dt^2 each.
+        stopping = change_limit * (math.sqrt(0.25 + 2.0 * size / change_limit) - 0.5)
+        wanted = wanted * (min(size, speed, stopping) / size)
+    change = wanted - before
+    size = float(np.linalg.norm(change))
+    return wanted if size <= change_limit else before + change * (change_limit / size)

@@ -26,6 +26,11 @@ _LEVEL_STYLE = {0: "green", 1: "yellow", 2: "red", 3: "magenta"}
 UNKNOWN = Text("unknown", style="dim italic")
 
 
+def state_name(state: ChannelState) -> str:
+    """As the operator reads it: an E-stop by its own name."""
+    return "E-STOP" if state.estop else STATE_NAMES.get(state.state, "?")
+
+
 class Status:
     """Subscribes to what the table shows; needs an initialised rospy node."""
 
@@ -61,7 +66,7 @@ class Status:
         """One line of plain text, for logs."""
         parts = []
         for side, state in self.states().items():
-            name = "unknown" if state is None else STATE_NAMES.get(state.state, "?")
+            name = "unknown" if state is None else state_name(state)
             reason = f" ({state.reason})" if state is not None and state.reason else ""
             parts.append(f"{side} {name}{reason}")
         for name, latest in self.tanks.items():
@@ -95,14 +100,18 @@ class Status:
         return table
 
     def _sides_table(self) -> Table:
-        table = Table("side", "state", "clutch", "what is wrong, what to do", title="sides", title_justify="left")
+        columns = ("side", "state", "held by", "clutch", "what is wrong, what to do")
+        table = Table(*columns, title="sides", title_justify="left")
         for side, state in self.states().items():
             if state is None:
-                table.add_row(side, UNKNOWN, UNKNOWN, "no state for a second")
+                table.add_row(side, UNKNOWN, UNKNOWN, UNKNOWN, "no state for a second")
                 continue
-            name = Text(STATE_NAMES.get(state.state, "?"), style=_STATE_STYLE.get(state.state, ""))
+            name = Text(state_name(state), style=_STATE_STYLE.get(state.state, ""))
+            holder = state.holder or "nobody"
+            if state.offered_to:
+                holder += f", offered to {state.offered_to}"
             words = " → ".join(part for part in (state.reason, state.advice) if part)
-            table.add_row(side, name, "pressed" if state.clutch else "", words)
+            table.add_row(side, name, holder, "pressed" if state.clutch else "", words)
         return table
 
     def _tanks_table(self) -> Table:

@@ -16,9 +16,11 @@ from saras.mesa_link.poses import to_matrix
 from saras_ros1 import convert
 from saras_ros1.arm_link import open_driver
 from saras_ros1.channel import SIDES, Channel, base_frame
+from saras_ros1.msg import SideFault
 from saras_ros1.node import Node, Tick, run
 from saras_ros1.set_point_limiter import SetPointLimiter
 from saras_ros1.srv import SetMode, SetModeResponse, SetRcm, SetRcmResponse
+from saras_ros1.tracking_watch import TrackingWatch
 
 
 class ArmDriverNode(Node):
@@ -39,8 +41,16 @@ class ArmDriverNode(Node):
         )
         limits = self.params.section("limiter")
         self.limiter = SetPointLimiter(
-            **{name: limits.number(name) for name in ("speed_m_s", "speed_rad_s", "reach_m", "reach_rad", "dt_max_s")}
+            speed_m_s=limits.number("speed_m_s", 0.001, 1.0),
+            speed_rad_s=limits.number("speed_rad_s", 0.01, 10.0),
+            acceleration_m_s2=limits.number("acceleration_m_s2", 0.1, 100.0),
+            acceleration_rad_s2=limits.number("acceleration_rad_s2", 1.0, 1000.0),
+            reach_m=limits.number("reach_m", 0.001, 0.05),
+            reach_rad=limits.number("reach_rad", 0.01, 1.0),
+            dt_max_s=limits.number("dt_max_s", 0.001, 0.1),
         )
+        tracking = self.params.section("tracking")
+        self.tracking = TrackingWatch(tracking.number("limit_m", 0.001, 0.05), tracking.number("limit_s", 0.05, 5.0))
         self.driver = open_driver(self, control=True, state_rate_hz=self.params.number("state_rate_hz", 10.0, 1000.0))
         self.params.finish()
 
@@ -55,6 +65,8 @@ class ArmDriverNode(Node):
         self.set_point = self.input(f"/mesa_{side}/set_point", PoseStamped, pose, timeout_s=set_point_timeout_s)
         self.tool = self.input(f"/mesa_{side}/tool_command", JointState, self._read_tool)
         self.tool.listeners.append(self._on_tool)
+        self.faults = self.output("/system/faults", SideFault)
+        self.faulty_engagement = 0
         self.loop(self.step, [self.set_point], period_s=period_s)
         self.every(0.1, self._bound_speed)
         rospy.Service(f"/mesa_{side}/set_rcm", SetRcm, self._on_set_rcm)
@@ -63,7 +75,7 @@ class ArmDriverNode(Node):
 
     def step(self, tick: Tick) -> None:
         """One set-point to the arm, or the one that stops it."""
-        if tick.stale or not self.channel.engaged:
+        if tick.stale or not self.channel.engaged or self.channel.engagement == self.faulty_engagement:
             self._stop()
             return
         self.ticks += 1
@@ -77,12 +89,26 @@ class ArmDriverNode(Node):
         try:
             if not self.sending or self.channel.newly_engaged():
                 self.limiter.start(self._measured())
+                self.tracking.reset()
                 self.sent_at = now - self.set_point.timeout_s
             self.driver.command_pose(self.limiter.step(self.set_point.value, now - self.sent_at))
         except (ArmLinkError, ValueError) as error:
             self._refuse(str(error))
             return
         self.sending, self.sent_at = True, now
+        self._watch_tracking(now)
+
+    def _watch_tracking(self, now: float) -> None:
+        """Ends the engagement when the arm does not follow: it is blocked, or moved by somebody else."""
+        error_m = float(np.linalg.norm(self.limiter.last[:3, 3] - self._measured()[:3, 3]))
+        reason = self.tracking.step(error_m, now)
+        if reason:
+            self.faulty_engagement = self.channel.engagement
+            self._stop()
+            fault = SideFault(side=self.side, source=self.name.lstrip("/"), reason=reason)
+            fault.advice = "look what keeps the arm from moving, then engage again"
+            fault.header.stamp = rospy.Time.now()
+            self.faults.publish(fault)
 
     def _measured(self) -> np.ndarray:
         """(4, 4) of the newest state."""

@@ -22,11 +22,11 @@ def read_roll(message: JointState) -> float:
     return message.position[ROLL]
 
 
-def read_tool_roll(message: JointState) -> float:
-    """Roll [rad] of the instrument, from arm_state."""
-    if not message.position or not math.isfinite(message.position[0]):
-        raise ValueError(f"tool {list(message.position)}: no finite roll")
-    return message.position[0]
+def read_tool(message: JointState) -> tuple[float, float]:
+    """Roll [rad] and opening (0 … 1) of the instrument, from arm_state."""
+    if len(message.position) < 2 or not all(map(math.isfinite, message.position)):
+        raise ValueError(f"tool {list(message.position)}: must be a finite roll and jaw")
+    return message.position[0], min(1.0, max(0.0, message.position[1]))
 
 
 def read_grip(message: JointState) -> float:
@@ -34,6 +34,24 @@ def read_grip(message: JointState) -> float:
     if not message.position or not 0.0 <= message.position[0] <= 1.0:
         raise ValueError(f"grip {list(message.position)}: must be in [0, 1]")
     return message.position[0]
+
+
+class JawPickup:
+    """The jaw stays as it is after an engagement until the clip comes by: tissue that is held is not let go."""
+
+    REACHED = 0.02  #: a clip so near to the jaw has come by
+
+    def __init__(self, jaw: float) -> None:
+        self._jaw, self._clip = jaw, math.nan
+        self._taken = False
+
+    def step(self, clip: float) -> float:
+        """Opening to command; clip: opening asked for, 0 … 1."""
+        if not self._taken:
+            passed = (self._clip - self._jaw) * (clip - self._jaw) <= 0.0  # not with the first one: NaN
+            self._taken = passed or abs(clip - self._jaw) <= self.REACHED
+            self._clip = clip
+        return clip if self._taken else self._jaw
 
 
 class Side:
@@ -46,19 +64,21 @@ class Side:
         self.joints = node.input(f"/touchball_{side}/joint_states", JointState, read_roll, timeout_s=timeout_s)
         self.grip = node.input(f"/touchball_{side}/grip", JointState, read_grip, timeout_s=timeout_s)
         self.buttons = node.input(f"/touchball_{side}/buttons", Joy, timeout_s=timeout_s)
-        self.tool = node.input(f"/mesa_{side}/tool", JointState, read_tool_roll, timeout_s=node.tool_timeout_s)
+        self.tool = node.input(f"/mesa_{side}/tool", JointState, read_tool, timeout_s=node.tool_timeout_s)
         self.names = [f"mesa_{side}/roll", f"mesa_{side}/jaw"]
         self.out = node.output(f"/mesa_{side}/tool_command", JointState)
         self.roll: float | None = None
         self.previous: float | None = None
+        self.jaw: JawPickup | None = None
         node.loop(self.step, [self.joints], period_s=node.period_s, name=side)
 
     def step(self, tick: Tick) -> None:
         """Nothing is commanded unless engaged: the instrument keeps what it has."""
         if self.channel.newly_engaged():
-            self.roll = self.previous = None
-        if self.roll is None:
-            self.roll = self.tool.fresh_value
+            self.roll = self.previous = self.jaw = None
+        if self.jaw is None and self.tool.fresh:
+            self.roll, jaw = self.tool.value
+            self.jaw = JawPickup(jaw)
         if tick.stale or not self.channel.engaged or not self.grip.fresh or self.roll is None:
             self.previous = None
             return
@@ -69,8 +89,10 @@ class Side:
             self.roll += math.remainder(hand - self.previous, 2.0 * math.pi)
             self.roll = float(np.clip(self.roll, -self.node.roll_limit, self.node.roll_limit))
         self.previous = hand
-        jaw = 0.0 if len(pressed) > CLIP and pressed[CLIP] else self.grip.value
-        message = JointState(name=self.names, position=[self.roll, jaw], velocity=self.node.speed_limits)
+        clip = 0.0 if len(pressed) > CLIP and pressed[CLIP] else self.grip.value
+        message = JointState(
+            name=self.names, position=[self.roll, self.jaw.step(clip)], velocity=self.node.speed_limits
+        )
         message.header.stamp = tick.stamp
         self.out.publish(message)
 

@@ -1,102 +1,70 @@
-"""touchball_receiver: the console's datagrams become topics, wrenches and states become datagrams to the console."""
+"""touchball_receiver: the consoles' datagrams become topics, wrenches and states become datagrams to the consoles."""
 
 from __future__ import annotations
 
 import threading
 import time
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import rospy
-from geometry_msgs.msg import PoseStamped, WrenchStamped
-from sensor_msgs.msg import JointState, Joy
+from geometry_msgs.msg import WrenchStamped
+from std_msgs.msg import String
 
+from saras import ConfigError
 from saras.net import ChannelState as WireState
-from saras.net import TouchballDown, TouchballUp, TouchballUpSide
+from saras.net import TouchballDown, TouchballUp
 from saras.net.keys import load as load_keys
 from saras_ros1 import convert
 from saras_ros1.channel import SIDES, Channel
 from saras_ros1.console_link import ConsoleLink, Received
-from saras_ros1.msg import TankExchange, TankState
+from saras_ros1.console_switch import ConsoleSwitch
+from saras_ros1.handle_outputs import HandleOutputs
+from saras_ros1.inputs import HEARTBEAT_S
+from saras_ros1.msg import TankExchange
 from saras_ros1.node import Node, Tick, run
-from saras_ros1.stamped import NANOSECONDS
+from saras_ros1.params import Params
+
+HEARD_S = 0.35  #: a console whose newest good datagram is older is not heard
 
 
-class Outputs:
-    """Topics of one handle and its port guard."""
+class ConsoleParams(NamedTuple):
+    """Whose console it is, and both ends of its link."""
 
-    def __init__(self, node: Node, side: str, buttons_every: int, state_every: int) -> None:
-        self.console = f"touchball_{side}"
-        self.joint_names = [f"{self.console}/{name}" for name in ("yaw", "pitch", "roll", "insertion")]
-        self.grip_name = [f"{self.console}/grip"]
-        self.pressed: list[int] = []
-        self.buttons_every, self.state_every = buttons_every, state_every
-        self.pose = node.output(f"/{self.console}/pose", PoseStamped)
-        self.joints = node.output(f"/{self.console}/joint_states", JointState)
-        self.buttons = node.output(f"/{self.console}/buttons", Joy)
-        self.grip = node.output(f"/{self.console}/grip", JointState)
-        self.exchange = node.output(f"/port_guard_{side}/exchange", TankExchange)
-        self.guard = node.output(f"/port_guard_{side}/state", TankState)
+    operator: str
+    bind: tuple[str, int]
+    console: tuple[str, int]
+    key_file: str
 
-    def publish(self, up: TouchballUpSide, seq: int, stamp_ns: int) -> None:
-        """One datagram's side. The pose goes last: who steps on it finds the buttons of the same moment."""
-        # A level, repeated at a lower rate, and at once when it changes.
-        pressed = [int(up.clutch), int(up.clip)]
-        if seq % self.buttons_every == 0 or pressed != self.pressed:
-            self.pressed = pressed
-            buttons = Joy(axes=[up.grip], buttons=pressed)
-            buttons.header.stamp = _time(stamp_ns)
-            self.buttons.publish(buttons)
-        if seq % self.state_every == 0:
-            self._publish_state(up, _time(stamp_ns))
-            self._publish_guard(up, seq, _time(stamp_ns))
-        self.pose.publish(convert.pose_msg(up.simball_T_handle, f"{self.console}/simball_base", stamp_ns))
+    @classmethod
+    def read(cls, params: Params) -> ConsoleParams:
+        """From a node's parameters or a section of them."""
+        bind = (params.text("bind_host"), params.integer("bind_port", 0, 65535))
+        console = (params.text("console_host"), params.integer("console_port", 1, 65535))
+        return cls(params.text("operator"), bind, console, params.text("key_file", empty=True))
 
-    def _publish_state(self, up: TouchballUpSide, stamp: rospy.Time) -> None:
-        ledger, joints = up.ledger, up.joints
-        exchange = TankExchange(
-            session=ledger.session,
-            seq=ledger.seq,
-            sent_J=ledger.sent_J,
-            requesting=ledger.requesting,
-            has_room=ledger.has_room,
-        )
-        grip = JointState(name=self.grip_name, position=[up.grip])
-        angles = [joints.yaw_rad, joints.pitch_rad, joints.roll_rad, joints.insertion_m]
-        state = JointState(name=self.joint_names, position=angles)
-        exchange.header.stamp = grip.header.stamp = state.header.stamp = stamp
-        self.exchange.publish(exchange)
-        self.grip.publish(grip)
-        self.joints.publish(state)
 
-    def _publish_guard(self, up: TouchballUpSide, seq: int, stamp: rospy.Time) -> None:
-        guard = up.guard
-        state = TankState(
-            seq=seq,
-            session=up.ledger.session,
-            energy_J=guard.energy_J,
-            minimum_J=guard.minimum_J,
-            request_J=guard.request_J,
-            available_J=guard.available_J,
-            maximum_J=guard.maximum_J,
-            reduction=guard.reduction,
-            scale=guard.scale,
-            damping=guard.damping.tolist(),
-            work_out_J=guard.work_out_J,
-            received_J=guard.received_J,
-            sent_J=up.ledger.sent_J,
-            vented_J=guard.vented_J,
-            granted_J=guard.granted_J,
-            requesting=up.ledger.requesting,
-            has_room=up.ledger.has_room,
-            status=guard.status.name,
-        )
-        state.header.stamp = stamp
-        self.guard.publish(state)
+class Console:
+    """One operator's console: its link, and when it was last heard."""
+
+    def __init__(self, params: ConsoleParams, age_limit_s: float) -> None:
+        self.operator = params.operator
+        keys = load_keys(Path(params.key_file).expanduser()) if params.key_file else None
+        self.link = ConsoleLink(params.bind, params.console, age_limit_s, keys)
+        self.heard_at_s = self.beat_at_s = -float("inf")
+
+    @property
+    def heard(self) -> bool:
+        """Whether it is there."""
+        return time.monotonic() - self.heard_at_s <= HEARD_S
 
 
 class TouchballReceiver(Node):
-    """Up: a thread of its own on the socket. Down: a datagram whenever both wrenches are new, else once a period."""
+    """Up: a thread a console on its socket. Down: a datagram whenever both wrenches are new, else once a period.
+
+    Each operator's console has a link of its own; of each side only one console's data passes (ConsoleSwitch).
+    """
 
     def __init__(self) -> None:
         super().__init__("touchball_receiver")
@@ -105,14 +73,17 @@ class TouchballReceiver(Node):
         peer_timeout_s = self.params.number("peer_timeout_s", 0.005, 2.0)
         buttons_every = self.params.integer("buttons_every", 1, 100)
         state_every = self.params.integer("state_every", 1, 100)
-        bind = (self.params.text("bind_host"), self.params.integer("bind_port", 0, 65535))
-        console = (self.params.text("console_host"), self.params.integer("console_port", 1, 65535))
-        key_file = self.params.text("key_file", empty=True)
-        keys = load_keys(Path(key_file).expanduser()) if key_file else None
-        self.link = ConsoleLink(bind, console, self.params.number("age_limit_s", 0.005, 10.0), keys)
+        age_limit_s = self.params.number("age_limit_s", 0.005, 10.0)
+        first = ConsoleParams.read(self.params)
+        second = ConsoleParams.read(self.params.section("second_console"))
+        wanted = [first, second] if self.params.flag("has_second_console") else [first]
         self.params.finish()
-        self.outputs = {side: Outputs(self, side, buttons_every, state_every) for side in SIDES}
+        if first.operator == second.operator:
+            raise ConfigError(f"{self.name}/second_console/operator = {second.operator!r}: must be another one")
+        self.consoles = {params.operator: Console(params, age_limit_s) for params in wanted}
+        self.outputs = {side: HandleOutputs(self, side, buttons_every, state_every) for side in SIDES}
         self.channels = {side: Channel(self, side) for side in SIDES}
+        self.switches = {side: ConsoleSwitch(tuple(self.consoles)) for side in SIDES}
         self.wrenches, self.ledgers = {}, {}
         for side in SIDES:
             wrench = convert.in_frame(f"touchball_{side}/touch_base", convert.wrench)
@@ -121,54 +92,76 @@ class TouchballReceiver(Node):
             ledger = f"/tank_master/port_{side}/exchange"
             self.ledgers[side] = self.input(ledger, TankExchange, timeout_s=peer_timeout_s)
         self.loop(self.send_down, list(self.wrenches.values()), period_s=period_s)
-        rospy.on_shutdown(self.link.close)
-        threading.Thread(target=self._receive, daemon=True).start()
+        for console in self.consoles.values():
+            rospy.on_shutdown(console.link.close)
+            threading.Thread(target=self._receive, args=(console,), daemon=True).start()
 
-    def _receive(self) -> None:
+    def _receive(self, console: Console) -> None:
         say_next = 0.0
         while not rospy.is_shutdown():
             try:
-                received = self.link.receive()
+                received = console.link.receive()
             except OSError:
                 return
             if isinstance(received, Received):
-                self._publish(received.packet, received.stamp_ns)
+                self._publish(console, received.packet, received.stamp_ns)
             elif received is not None and time.monotonic() >= say_next:
                 # Not logwarn_throttle: in a flood of forged datagrams finding its caller costs more than refusing.
                 say_next = time.monotonic() + 1.0
-                rospy.logwarn(f"console datagram refused: {received}; counts {self.link.counts()}")
+                rospy.logwarn(f"{console.operator}: datagram refused: {received}; counts {console.link.counts()}")
 
-    def _publish(self, packet: TouchballUp, stamp_ns: int) -> None:
+    def _publish(self, console: Console, packet: TouchballUp, stamp_ns: int) -> None:
+        console.heard_at_s = now = time.monotonic()
         for side in SIDES:
-            up = getattr(packet, side)
-            if up.present:
-                self.outputs[side].publish(up, packet.seq, stamp_ns)
+            up, switch = getattr(packet, side), self.switches[side]
+            if up.present and switch.passes(console.operator, now):
+                self.outputs[side].publish(up, packet.seq, stamp_ns, switch.session(up.ledger.session))
+        if now - console.beat_at_s >= HEARTBEAT_S:
+            console.beat_at_s = now
+            self._heartbeats.publish(String(f"console/{console.operator}"))
 
     def send_down(self, tick: Tick) -> None:
-        """What is stale goes down as zero force, HOLD, and a tank that neither asks nor takes."""
-        packet = TouchballDown()
-        for side in SIDES:
-            down = getattr(packet, side)
-            wrench = self.wrenches[side].fresh_value
-            down.touch_wrench = np.zeros(6) if wrench is None else wrench
-            down.state = WireState(self.channels[side].state)
-            down.engagement = self.channels[side].engagement
-            exchange = self.ledgers[side].message
-            if exchange is not None:
-                fresh = self.ledgers[side].fresh
-                down.ledger.session, down.ledger.seq = exchange.session, exchange.seq
-                down.ledger.sent_J = exchange.sent_J
-                down.ledger.requesting = fresh and exchange.requesting
-                down.ledger.has_room = fresh and exchange.has_room
-        self.link.send(packet)
+        """To each console its own sides."""
+        now = time.monotonic()
+        for side, switch in self.switches.items():
+            message = self.channels[side].input.message
+            if switch.update("" if message is None else message.holder, self._heard, now):
+                rospy.loginfo(f"{side}: the hand is {switch.source}'s from now on")
+        for operator, console in self.consoles.items():
+            packet = TouchballDown()
+            for side, switch in self.switches.items():
+                if switch.passes(operator, now):
+                    self._fill(getattr(packet, side), side, switch)
+            console.link.send(packet)
+
+    def _heard(self, operator: str) -> bool:
+        return self.consoles[operator].heard
+
+    def _fill(self, down, side: str, switch: ConsoleSwitch) -> None:
+        """What is stale goes down as zero force, HOLD, and a tank that neither asks nor takes.
+
+        So does all, but as WAITING, to a console whose operator does not hold the arm: it is never filled.
+        """
+        wrench = self.wrenches[side].fresh_value
+        down.touch_wrench = np.zeros(6) if wrench is None else wrench
+        down.state = WireState(self.channels[side].state)
+        down.engagement = self.channels[side].engagement
+        exchange = self.ledgers[side].message
+        if exchange is not None:
+            fresh = self.ledgers[side].fresh
+            down.ledger.session, down.ledger.seq = switch.session(exchange.session), exchange.seq
+            down.ledger.sent_J = exchange.sent_J
+            down.ledger.requesting = fresh and exchange.requesting
+            down.ledger.has_room = fresh and exchange.has_room
 
     def report(self) -> dict:
-        """Counts and age of the link."""
-        return {**self.link.counts(), "link_age_ms": round(1e3 * self.link.age_s(), 1)}
-
-
-def _time(stamp_ns: int) -> rospy.Time:
-    return rospy.Time(*divmod(stamp_ns, NANOSECONDS))
+        """Counts and age of each link; the first one's without a name before them."""
+        values = {}
+        for i, (operator, console) in enumerate(self.consoles.items()):
+            prefix = f"{operator} " if i else ""
+            values.update({prefix + name: count for name, count in console.link.counts().items()})
+            values[f"{prefix}link_age_ms"] = round(1e3 * console.link.age_s(), 1)
+        return values
 
 
 def main() -> int:

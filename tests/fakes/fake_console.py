@@ -27,6 +27,7 @@ class FakeConsole:
         self.session, self.seq = time.time_ns(), 0
         self.down: TouchballDown | None = None
         self.sending = True
+        self.joints = None  # of a side: (yaw, pitch, roll, insertion)
         self.motion = None  # called with the time since start before each datagram
         self.running = threading.Event()
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -50,6 +51,9 @@ class FakeConsole:
             pose = np.eye(4)
             pose[:3, 3] = self.position[side]
             up.simball_T_handle = pose
+            if self.joints is not None:
+                joints = up.joints
+                joints.yaw_rad, joints.pitch_rad, joints.roll_rad, joints.insertion_m = self.joints(side)
             up.ledger.session, up.ledger.seq, up.ledger.has_room = self.session, self.seq, True
         return packet
 

@@ -1,4 +1,4 @@
-"""The simulated arm as a plant, the content check, and the last check on set-points."""
+"""The simulated arm as a plant, and the content check."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from mesa_link_peers import HOME, FakePlant
 
-from saras import ConfigError, add_delta, displacement
+from saras import ConfigError
 from saras.kinematics import mesa, scene
 from saras.mesa_link import MaxVelocity, MessageError, Reason, Received, State, Target, Tool
 from saras.mesa_link.guard import StateGuard, StateGuardConfig
@@ -223,29 +223,3 @@ def test_backlog_and_reported_faults_are_refused_and_a_restarted_arm_is_not() ->
 def test_guard_config_names_the_field(name: str, value: float) -> None:
     with pytest.raises(ConfigError, match=name):
         StateGuardConfig(**{name: value})
-
-
-# -- the last check on set-points ----------------------------------------------------------------------------------
-
-
-def test_limiter_never_steps_further_than_speed_times_dt(many: int) -> None:
-    from saras_ros1.set_point_limiter import SetPointLimiter
-
-    rng = np.random.default_rng(7)
-    for _ in range(20 * many):
-        limiter = SetPointLimiter(0.1, 1.0, 0.05, 0.5, 0.03)
-        limiter.start(add_delta(np.eye(4), rng.normal(size=6), 1.0))
-        for _ in range(50):
-            before = limiter.last
-            dt = float(rng.uniform(-0.01, 0.1))
-            asked = add_delta(before, rng.normal(scale=(0.02,) * 3 + (0.2,) * 3), 1.0)
-            delta = displacement(before, asked)
-            if np.linalg.norm(delta[:3]) > 0.05 or np.linalg.norm(delta[3:]) > 0.5:
-                with pytest.raises(ValueError, match="from the last one sent"):
-                    limiter.step(asked, dt)
-                assert limiter.last is before
-                continue
-            made = displacement(before, limiter.step(asked, dt))
-            allowed = min(max(dt, 0.0), 0.03)
-            assert np.linalg.norm(made[:3]) <= 0.1 * allowed + 1e-12
-            assert np.linalg.norm(made[3:]) <= 1.0 * allowed + 1e-9
