@@ -6,7 +6,7 @@ the time are passed, each between one named peer and one port inside. No privile
 
     script/closed-graph                                             all simulated, inside
     script/closed-graph --console 192.168.5.2 --key saras.key --listen 192.168.5.1:48010
-        --arm-left 192.168.6.2:48020 --arm-right 192.168.6.2:48021 regions:=/home/me/bones.yaml
+        --arm-left 192.168.6.2:48020 --arm-right 192.168.6.2:48021 regions:=$HOME/bones.yaml
     script/closed-graph --join rosservice call /system/left/engage  a program inside (without one: a shell)
 
 Further NAME:=VALUE are arguments of launch/saras_mrs.launch.
@@ -192,13 +192,17 @@ def inside(plan: Plan, command: list[str], pipe: socket.socket, namespace: bool)
         network_namespace.end_with_parent(signal.SIGINT)
         kinds = {"console": doors.console is not None, "arms": list(doors.arms), "clocks": list(doors.clocks)}
         socket.send_fds(pipe, [json.dumps(kinds).encode()], [each.fileno() for each in doors.sockets()])
-        if pipe.recv(1) != b"g":  # the parent could not open its ends
-            os._exit(2)
-        os.execvpe(command[0], command, environment())
     except OSError as error:
         pipe.send(json.dumps({"error": f"{error.strerror or error}", "namespace": namespace}).encode())
+        os._exit(2)
     except Error as error:
         pipe.send(json.dumps({"error": str(error), "namespace": False}).encode())
+        os._exit(2)
+    try:
+        if pipe.recv(1) == b"g":  # else the parent could not open its ends
+            os.execvpe(command[0], command, environment())
+    except OSError as error:
+        say(f"{command[0]}: {error.strerror}")
     os._exit(2)
 
 
@@ -269,10 +273,8 @@ def run(arguments: argparse.Namespace, given: list[str]) -> int:
         pid, doors, pipe = start(plan, command, not arguments.loopback)
     except PermissionError as error:
         if arguments.strict:
-            raise ConfigError(
-                f"a network namespace is not permitted here ({error}); without --strict: loopback"
-            ) from None
-        say(f"a network namespace is not permitted here ({error})")
+            raise ConfigError(f"no network namespace is permitted here ({error})") from None
+        say(f"no network namespace is permitted here ({error})")
         arguments.loopback = True
         pid, doors, pipe = start(plan, command, False)
     if arguments.loopback:
