@@ -99,7 +99,7 @@ class LinkTest:
         self._look(views, "second", list(views))
         doubtful = {pair.subscriber for pair in pairs if judge(pair, views, self._must_flow).state == State.SILENT}
         if doubtful:
-            self._sleep(self._pause_s)
+            self._sleep(self._observe_s)  # on a busy computer a message may take its time
             self._look(views, "third", sorted(doubtful))
         return {pair: judge(pair, views, self._must_flow) for pair in pairs}
 

@@ -61,6 +61,8 @@ class GraphWatch(Node):
         self.clock_hosts: dict[str, tuple[Address, bool]] = {}
         self.master_problem = ""
         self._uris: list[str] = []
+        self._accepted: list[int] = []
+        self._wires: list[tuple[str, Address, bool]] = []
         self._exposure_said: Exposure | None = None
         self._late_clocks: set[str] = set()
         self._all_anew = threading.Event()
@@ -100,8 +102,10 @@ class GraphWatch(Node):
                 pairs = self._pairs()
                 if not set(pairs) <= seen:
                     changed_s = now
-                seen = set(pairs)
-                self._uris = self._uris_of(pairs)
+                if not self.master_problem:  # else what it said before still holds, as far as anybody knows
+                    seen = set(pairs)
+                    self._uris = self._uris_of(pairs)
+                    self._accepted, self._wires = _authenticated_ports(), _hosts_of_wires()
                 self._look_at_ports()
                 self._look_at_links(pairs, anew, settled=time.monotonic() - changed_s >= self.settle_s or self.tested)
                 self._look_at_clocks()
@@ -117,6 +121,8 @@ class GraphWatch(Node):
             self.master_problem = ""
             return pairs
         except CallError as error:
+            if not self.master_problem:
+                rospy.logwarn(f"{self.name}: roscore does not answer: {error}")
             self.master_problem = f"roscore does not answer: {error}"
             return []
 
@@ -131,9 +137,8 @@ class GraphWatch(Node):
         return uris
 
     def _look_at_ports(self) -> None:
-        accepted = [port] if (port := _authenticated_port()) else []
         found = graph_exposure.look(
-            self.calls.master_uri, self._uris, closed_interfaces=self.closed_interfaces, accepted_udp=accepted
+            self.calls.master_uri, self._uris, closed_interfaces=self.closed_interfaces, accepted_udp=self._accepted
         )
         before, self._exposure_said = self._exposure_said, found
         self.exposure = found
@@ -167,7 +172,7 @@ class GraphWatch(Node):
 
     def _look_at_clocks(self) -> None:
         hosts = {name: (where, False) for name, where in self.given_clocks.items()}
-        for name, where, in_graph in [*((n, w, True) for n, w in self._hosts_of_graph()), *_hosts_of_wires()]:
+        for name, where, in_graph in [*((n, w, True) for n, w in self._hosts_of_graph()), *self._wires]:
             if where not in [known for known, _ in hosts.values()]:
                 hosts[name] = (where, in_graph)
         for name, (where, _) in hosts.items():
@@ -256,10 +261,10 @@ def _line(pair: Pair, verdict: Verdict) -> str:
     return f"{pair.topic} {pair.publisher} → {pair.subscriber}: {verdict.state.value}: {verdict.why}"
 
 
-def _authenticated_port() -> int | None:
+def _authenticated_ports() -> list[int]:
     """UDP port of touchball_receiver when it believes authenticated datagrams only."""
     values = _parameters("/touchball_receiver")
-    return values.get("bind_port") if values.get("key_file") else None
+    return [values["bind_port"]] if values.get("key_file") and "bind_port" in values else []
 
 
 def _hosts_of_wires() -> list[tuple[str, Address, bool]]:

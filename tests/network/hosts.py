@@ -6,6 +6,7 @@ import contextlib
 import os
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from saras_ros1.processes import Child
@@ -66,8 +67,9 @@ class Hosts:
         return self
 
     def __exit__(self, *_: object) -> None:
-        while self._children:
-            self._children.pop().stop(patience_s=15.0)
+        with ThreadPoolExecutor(max_workers=16) as pool:
+            list(pool.map(lambda child: child.stop(patience_s=15.0), self._children))
+        self._children.clear()
         while self._made:
             with contextlib.suppress(RuntimeError):
                 ip("netns", "del", self._made.pop())

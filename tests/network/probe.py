@@ -2,12 +2,16 @@
 
 probe.py diagnostics NAME=WORD…      until each status says its word
 probe.py teleoperate                 engages both sides and watches the arms move
+probe.py hung_master                 stops roscore's process, and lets it go on when that is shown
 """
 
 import json
+import os
+import signal
 import sys
 import time
 
+import rosgraph
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped
@@ -29,7 +33,7 @@ def wait_until(condition):
     return False
 
 
-def diagnostics(wanted):
+def watch_diagnostics():
     seen = {}
 
     def take(message):
@@ -38,6 +42,25 @@ def diagnostics(wanted):
             seen[status.name] = {"level": status.level, "message": status.message, "values": values}
 
     rospy.Subscriber("/diagnostics", DiagnosticArray, take, queue_size=100)
+    return seen
+
+
+def hung_master():
+    seen = watch_diagnostics()
+    known = wait_until(lambda: "links:" in seen.get("graph links", {}).get("message", ""))
+    master = rosgraph.Master("/probe").getPid()
+    os.kill(master, signal.SIGSTOP)
+    try:
+        shown = known and wait_until(lambda: "roscore does not answer" in seen["graph links"]["message"])
+        level = seen["graph links"]["level"]
+    finally:
+        os.kill(master, signal.SIGCONT)
+    recovered = wait_until(lambda: "links:" in seen["graph links"]["message"])
+    return {"shown": shown, "level": level, "recovered": recovered}
+
+
+def diagnostics(wanted):
+    seen = watch_diagnostics()
     complete = wait_until(lambda: all(word in json.dumps(seen.get(name, {})) for name, word in wanted.items()))
     return {"complete": complete, "status": seen}
 
@@ -83,6 +106,8 @@ rospy.init_node("probe", anonymous=True)
 arguments = sys.argv[2:]
 if sys.argv[1] == "teleoperate":
     result = teleoperate()
+elif sys.argv[1] == "hung_master":
+    result = hung_master()
 else:
     result = diagnostics(dict(argument.split("=", 1) for argument in arguments))
 result["listening"] = sorted({(each.protocol, each.port) for each in listening()})

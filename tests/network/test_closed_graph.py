@@ -19,7 +19,7 @@ from saras.net import keys as key_files
 FAKES, HERE = ROOT / "tests" / "fakes", Path(__file__).parent
 NAMES = ["core", "console", "arms", "stranger"]
 CONSOLE_AHEAD_S, ARMS_AHEAD_S = 2.5, -0.3
-OK, WARN = 0, 1
+OK, WARN, STALE = 0, 1, 3
 
 WHY_NOT = why_not_permitted() or ("" if shutil.which("roslaunch") else "ROS is not installed")
 pytestmark = pytest.mark.skipif(bool(WHY_NOT), reason=WHY_NOT)
@@ -85,6 +85,13 @@ def closed(platform):
     )
 
 
+def wait_until(condition, what: str, patience_s: float = 60.0) -> None:
+    end_s = time.monotonic() + patience_s
+    while not condition():
+        assert time.monotonic() < end_s, f"not within {patience_s:g} s: {what}"
+        time.sleep(0.2)
+
+
 def reachable(hosts: Hosts, name: str, ports: list[int]) -> list[int]:
     """TCP ports of the core's computer that answer to a host."""
     done = hosts.python(name, str(HERE / "reach.py"), hosts.address("core"), *map(str, ports))
@@ -138,13 +145,11 @@ def open_graph(hosts: Hosts):
     """A graph as ROS starts it, over two hosts, where one talker's host name is known to nobody: what is said of it."""
     uri = {"ROS_MASTER_URI": f"http://{hosts.address('core')}:11311"}
     hosts.start("core", "roscore", "roscore", "-p", "11311", **uri)
-    while reachable(hosts, "core", [11311]) == []:
-        time.sleep(0.5)
+    wait_until(lambda: reachable(hosts, "core", [11311]), "roscore")
     node = str(ROOT / "devel" / "lib" / "saras_ros1" / "graph_watch")
     fast = ("_period_s:=2.0", "_settle_s:=1.0", "_observe_s:=1.0")
-    hosts.start(
-        "core", "parameters", "rosparam", "load", str(ROOT / "config" / "graph_watch.yaml"), **uri
-    )._process.wait(60)
+    load = hosts.start("core", "parameters", "rosparam", "load", str(ROOT / "config" / "graph_watch.yaml"), **uri)
+    wait_until(lambda: load.exit_code == 0, "parameters")
     hosts.start("core", "watch", node, "__name:=graph_watch", *fast, **uri)
     hosts.start("core", "listener", "rostopic", "echo", "/heard", **uri)
     hosts.start("core", "deaf_listener", "rostopic", "echo", "/unheard", **uri)
@@ -181,3 +186,11 @@ def test_the_clock_of_a_host_of_the_graph_may_be_off_by_less(hosts: Hosts, open_
     clock = open_graph["status"][f"clock of {hosts.address('arms')}"]
     assert clock["level"] == WARN, clock
     assert abs(float(clock["values"]["offset_s"]) - ARMS_AHEAD_S) < 0.05
+
+
+def test_a_hung_master_is_shown_as_unknown_and_holds_nobody_up(hosts: Hosts, open_graph: dict) -> None:
+    uri = {"ROS_MASTER_URI": f"http://{hosts.address('core')}:11311"}
+    done = hosts.python("core", str(HERE / "probe.py"), "hung_master", **uri)
+    assert done.returncode == 0, done.stderr
+    result = json.loads(done.stdout.splitlines()[-1])
+    assert (result["shown"], result["recovered"], result["level"]) == (True, True, STALE), result
