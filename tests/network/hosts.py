@@ -112,5 +112,5 @@ class Hosts:
         """Runs a Python program there to its end."""
         return subprocess.run(
             self.command(name, sys.executable, *words),
-            env=self.environment(name, **environment), capture_output=True, text=True, timeout=150, check=False,
+            env=self.environment(name, **environment), capture_output=True, text=True, timeout=400, check=False,
         )  # fmt: skip

@@ -20,7 +20,7 @@ from std_srvs.srv import Trigger
 
 from saras_ros1.listening_sockets import listening
 
-PATIENCE_S = 90.0
+PATIENCE_S = 180.0
 MOVED_M = 0.003
 
 
