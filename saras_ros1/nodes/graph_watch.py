@@ -262,9 +262,10 @@ def _line(pair: Pair, verdict: Verdict) -> str:
 
 
 def _authenticated_ports() -> list[int]:
-    """UDP port of touchball_receiver when it believes authenticated datagrams only."""
+    """UDP ports of touchball_receiver that believe authenticated datagrams only."""
     values = _parameters("/touchball_receiver")
-    return [values["bind_port"]] if values.get("key_file") and "bind_port" in values else []
+    links = [values, *([values["second_console"]] if values.get("has_second_console") else [])]
+    return [link["bind_port"] for link in links if link.get("key_file") and "bind_port" in link]
 
 
 def _hosts_of_wires() -> list[tuple[str, Address, bool]]:
