@@ -17,8 +17,8 @@ class SetPointLimiter:
 
     speed_m_s, speed_rad_s, acceleration_m_s2, acceleration_rad_s2: largest of what is sent; reach_m, reach_rad: a
     set-point further than this from the last one sent is refused. A set-point that moves within these is sent as it
-    is; after one that does not, what is sent brakes in time (the discrete stopping speed). Poses are (4, 4) in one
-    frame, translation and rotation are bounded each by itself.
+    is; one that was lost is caught up with so that what is sent brakes in time (the discrete stopping speed). Poses are
+    (4, 4) in one frame, translation and rotation are bounded each by itself.
     """
 
     def __init__(
@@ -48,11 +48,12 @@ class SetPointLimiter:
         self._dt_max_s = dt_max_s
         self._velocity = (np.zeros(3), np.zeros(3))
         self.last: Array | None = None
+        self._asked: Array | None = None
         self.limited = 0
 
     def start(self, measured: Array) -> None:
         """The next step goes from the measured pose, from rest."""
-        self.last = measured
+        self.last = self._asked = measured
         self._velocity = (np.zeros(3), np.zeros(3))
 
     def step(self, set_point: Array, dt: float) -> Array:
@@ -62,7 +63,7 @@ class SetPointLimiter:
         """
         if not np.isfinite(set_point).all():
             raise ValueError("set-point is not finite")
-        assert self.last is not None, "start() comes first"
+        assert self.last is not None and self._asked is not None, "start() comes first"
         delta = displacement(self.last, set_point)
         sizes = (float(np.linalg.norm(delta[:3])), float(np.linalg.norm(delta[3:])))
         if sizes[0] > self._reach[0] or sizes[1] > self._reach[1]:
@@ -73,9 +74,12 @@ class SetPointLimiter:
         dt = min(dt, self._dt_max_s)
         if not dt > 0.0:
             return self.last
-        parts = (delta[:3], delta[3:])
-        self._velocity = tuple(
-            _towards(part, before, *bounds, dt) for part, before, bounds in zip(parts, self._velocity, self._bounds)
+        asked_velocity = displacement(self._asked, set_point) / dt
+        self._asked = set_point
+        linear, angular = self._bounds
+        self._velocity = (
+            _towards(delta[:3], asked_velocity[:3], self._velocity[0], *linear, dt),
+            _towards(delta[3:], asked_velocity[3:], self._velocity[1], *angular, dt),
         )
         sent = np.concatenate(self._velocity)
         if np.linalg.norm(sent * dt - delta) <= 1e-12:
@@ -86,17 +90,26 @@ class SetPointLimiter:
         return self.last
 
 
-def _towards(delta: Array, before: Array, speed: float, acceleration: float, dt: float) -> Array:
-    """Velocity of this step; |velocity| <= speed and |velocity - before| <= acceleration dt, in every case."""
-    wanted = delta / dt
-    size = float(np.linalg.norm(wanted))
+def _towards(delta: Array, target: Array, before: Array, speed: float, acceleration: float, dt: float) -> Array:
+    """Velocity of this step; |velocity| <= speed and |velocity - before| <= acceleration dt, in every case.
+
+    delta: way to the set-point; target: its own velocity; before: velocity of the last step.
+    """
     change_limit = acceleration * dt
-    if size <= speed and np.linalg.norm(wanted - before) <= change_limit:
-        return wanted
+    if np.linalg.norm(target) > speed:  # a jump and no motion
+        target = np.zeros(3)
+    behind = delta / dt - target
+    size = float(np.linalg.norm(behind))
     if size > 0.0:
-        # The largest speed from which steps of falling speed end where they should: n (n + 1) / 2 of a dt^2 each.
-        stopping = change_limit * (math.sqrt(0.25 + 2.0 * size / change_limit) - 0.5)
-        wanted = wanted * (min(size, speed, stopping) / size)
-    change = wanted - before
-    size = float(np.linalg.norm(change))
-    return wanted if size <= change_limit else before + change * (change_limit / size)
+        # The largest speed from which steps of falling speed end where they should: in units of a dt^2 the steps
+        # v, v - 1, ... add up to (n + 1) (v - n / 2) with n = floor(v).
+        way = size / change_limit
+        n = math.floor(math.sqrt(0.25 + 2.0 * way) - 0.5)
+        behind = behind * (change_limit * (way / (n + 1) + 0.5 * n) / size)
+    wanted = _within(target + behind, speed)
+    return before + _within(wanted - before, change_limit)
+
+
+def _within(vector: Array, limit: float) -> Array:
+    size = float(np.linalg.norm(vector))
+    return vector if size <= limit else vector * (limit / size)
