@@ -123,8 +123,9 @@ class ArmDriverNode(Node):
             return
         self.sending = False
         try:
-            self.driver.command_pose(self._measured())
-        except ArmLinkError as error:
+            # Bounded as every other step: what the arm reports may be the very fault that ends the engagement.
+            self.driver.command_pose(self.limiter.step(self._measured(), time.monotonic() - self.sent_at))
+        except (ArmLinkError, ValueError) as error:
             self._refuse(f"stop not sent: {error}")
 
     def _refuse(self, reason: str) -> None:
@@ -169,7 +170,7 @@ class ArmDriverNode(Node):
 
     def _at_rest(self, act) -> tuple[bool, str]:
         """Runs a request that the arm allows at rest only; what went wrong as text."""
-        if self.channel.engaged:
+        if self.channel.engaged or self.channel.inherited:
             return False, f"{self.side} is engaged: hold it first (/system/{self.side}/hold)"
         try:
             act()
