@@ -31,9 +31,9 @@ class SideLimits:
     """What a side's inputs are judged by."""
 
     def __init__(self, params: Params) -> None:
-        self.console_s = params.number("console_limit_s", 0.02, 10.0)
-        self.arm_s = params.number("arm_limit_s", 0.02, 10.0)
-        self.node_s = params.number("node_limit_s", 0.02, 10.0)
+        self.console_s = params.number("console_limit_s", 0.02, 1.0)
+        self.arm_s = params.number("arm_limit_s", 0.02, 1.0)
+        self.node_s = params.number("node_limit_s", 0.02, 2.0)
         self.jump_m = params.number("jump_limit_m", 0.001, 1.0)
         self.hand_m_s = params.number("align_hand_speed_m_s", 0.001, 1.0)
 

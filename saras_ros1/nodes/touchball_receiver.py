@@ -73,7 +73,7 @@ class TouchballReceiver(Node):
         peer_timeout_s = self.params.number("peer_timeout_s", 0.005, 2.0)
         buttons_every = self.params.integer("buttons_every", 1, 100)
         state_every = self.params.integer("state_every", 1, 100)
-        age_limit_s = self.params.number("age_limit_s", 0.005, 10.0)
+        age_limit_s = self.params.number("age_limit_s", 0.005, 1.0)
         first = ConsoleParams.read(self.params)
         second = ConsoleParams.read(self.params.section("second_console"))
         wanted = [first, second] if self.params.flag("has_second_console") else [first]
