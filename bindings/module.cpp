@@ -21,4 +21,8 @@ PYBIND11_MODULE(_core, m) {
   saras::bindings::bind_console(console);
   auto pipeline = m.def_submodule("pipeline", "Both sides of the teleoperation in one step");
   saras::bindings::bind_pipeline(pipeline);
+#ifdef SARAS_WITH_RUNTIME
+  auto runtime = m.def_submodule("runtime", "The real-time host: loop, mailboxes, flight recorder");
+  saras::bindings::bind_runtime(runtime);
+#endif
 }

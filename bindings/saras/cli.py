@@ -21,6 +21,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "keys": ("saras.net.command", "make and check the key file of a console's link over a network"),
     "regions": ("saras.collision.command", "make forbidden regions from a bone's mesh, or check a file of them"),
     "replay": ("saras.replay", "run the laws again on recorded inputs and compare"),
+    "replay-flight": ("saras.runtime.command", "run a flight record of the real-time host again, and draw it"),
     "report": ("saras.report.command", "write the HTML report of a recorded session"),
     "udp-proxy": ("saras.sim.udp_proxy_command", "an impaired network between a console and the platform"),
 }

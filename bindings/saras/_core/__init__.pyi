@@ -15,6 +15,7 @@ from . import net
 from . import safety
 from . import console
 from . import pipeline
+from . import runtime
 
 __all__: list[str] = [
     "ConfigError",
@@ -29,6 +30,7 @@ __all__: list[str] = [
     "kinematics",
     "net",
     "pipeline",
+    "runtime",
     "safety",
     "sim",
     "teleop",
