@@ -36,11 +36,11 @@ class Proximity:
         self._names = {f"mesa_{side}": side for side in sides}
         self._frames = StaticFrames()
         self._unknown = Nearness(unknown_speed_scale, NOWHERE, math.inf, math.nan)
-        self._input = node.input("/collision/state", CollisionState, self._read, timeout_s=timeout_s)
+        self.input = node.input("/collision/state", CollisionState, self._read, timeout_s=timeout_s)
 
     def of(self, side: str) -> Nearness:
         """The bounds that hold for this side now."""
-        known = self._input.fresh_value
+        known = self.input.fresh_value
         return self._unknown if known is None else known.get(side, self._unknown)
 
     def _read(self, message: CollisionState) -> dict[str, Nearness]:

@@ -21,10 +21,15 @@ from saras_ros1 import convert
 
 SIDES = ("left", "right")
 NODES = {
-    "/frames", "/supervisor", "/touchball_receiver", "/tf_transformer_left", "/tf_transformer_right", "/transparency",
-    "/tank_master", "/tank_slave", "/velocity_integrator_left", "/velocity_integrator_right", "/tool_command",
-    "/arm_state_left", "/arm_state_right", "/arm_driver_left", "/arm_driver_right", "/visualization",
-    "/colliding_regions", "/dvrk_sim",
+    "/frames", "/supervisor", "/tool_command", "/arm_state_left", "/arm_state_right", "/arm_driver_left",
+    "/arm_driver_right", "/visualization", "/colliding_regions", "/dvrk_sim",
+}  # fmt: skip
+HOSTING_NODES = {
+    "separate": {
+        "/touchball_receiver", "/tf_transformer_left", "/tf_transformer_right", "/transparency", "/tank_master",
+        "/tank_slave", "/velocity_integrator_left", "/velocity_integrator_right",
+    },
+    "realtime": {"/realtime_host"},
 }  # fmt: skip
 FRAMES = ["sbs_world", "rcm", "tool_tip", "set_point"]
 
@@ -39,6 +44,8 @@ class PlatformTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         rospy.init_node("platform_test")
+        cls.hosting = rospy.get_param("~hosting", "separate")
+        cls.nodes = NODES | HOSTING_NODES[cls.hosting]
         cls.state = {s: Newest(f"/system/{s}/state", ChannelState) for s in SIDES}
         cls.set_point = {s: Newest(f"/mesa_{s}/set_point", PoseStamped) for s in SIDES}
         cls.tip = {s: Newest(f"/mesa_{s}/ee_pose", PoseStamped) for s in SIDES}
@@ -56,7 +63,9 @@ class PlatformTest(unittest.TestCase):
         )
 
     def test_1_all_nodes_come_up_and_both_sides_engage(self):
-        wait_until(lambda: set(rosnode.get_node_names()) >= NODES, lambda: NODES - set(rosnode.get_node_names()))
+        wait_until(
+            lambda: set(rosnode.get_node_names()) >= self.nodes, lambda: self.nodes - set(rosnode.get_node_names())
+        )
         for side in SIDES:
             self.await_state(side, ChannelState.READY)
             engage = rospy.ServiceProxy(f"/system/{side}/engage", Trigger)
@@ -102,7 +111,7 @@ class PlatformTest(unittest.TestCase):
         wait_until(lambda: all(t.state != t.CLEAR for t in self.distances.message.tools), self.distances.message)
 
     def test_5_a_silent_link_holds(self):
-        kill("/touchball_receiver")
+        kill("/touchball_receiver" if self.hosting == "separate" else "/realtime_host")
         self.await_state("left", ChannelState.HOLD)
         self.assertIn("console data", self.state["left"].message.reason)
 

@@ -34,15 +34,28 @@ class TrustedTest(unittest.TestCase):
         cls.key_file = str(Path(cls.directory.name, "saras.key"))
         key_files.save(Path(cls.key_file), key_files.draw())
         cls.up, cls.down = free_port(), free_port()
+        cls.node = "touchball_receiver" if rospy.get_param("~hosting", "separate") == "separate" else "realtime_host"
         values = yaml.safe_load((ROOT / "config" / "console.yaml").read_text(encoding="utf-8"))["touchball_receiver"]
         values.update(bind_port=cls.up, console_port=cls.down, key_file=cls.key_file)
         rospy.set_param("/touchball_receiver", values)
+        if cls.node == "realtime_host":
+            cls.set_realtime_params()
         rospy.set_param("/saras/simulated", True)
         rospy.set_param("/saras/trace_laws", False)
         cls.pose = Newest("/touchball_left/pose", PoseStamped)
         cls.diagnostics = Newest("/diagnostics", DiagnosticArray)
         cls.children = {}
         cls.start_receiver()
+
+    @classmethod
+    def set_realtime_params(cls):
+        """The host reads the parameters of all nodes that it is; the launch file for frames runs already."""
+        for file in ("teleop", "tanks", "realtime"):
+            for name, section in yaml.safe_load((ROOT / "config" / f"{file}.yaml").read_text(encoding="utf-8")).items():
+                rospy.set_param(f"/{name}", section)
+        rospy.set_param("/realtime_host/hosting", "realtime")
+        rospy.set_param("/realtime_host/hold_after_s", 2.0)
+        rospy.set_param("/realtime_host/record_s", 5.0)
 
     @classmethod
     def tearDownClass(cls):
@@ -52,7 +65,7 @@ class TrustedTest(unittest.TestCase):
 
     @classmethod
     def start_receiver(cls):
-        cls.children["receiver"] = spawn("touchball_receiver", "__name:=touchball_receiver")
+        cls.children["receiver"] = spawn(cls.node, f"__name:={cls.node}")
 
     @classmethod
     def start_console(cls, *arguments):
@@ -70,7 +83,7 @@ class TrustedTest(unittest.TestCase):
         def told():
             for message in self.diagnostics.all:
                 for status in message.status:
-                    if "touchball_receiver" in status.name:
+                    if self.node in status.name:
                         return {value.key: value.value for value in status.values}
             return None
 
