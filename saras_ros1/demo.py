@@ -45,6 +45,12 @@ def parse(argv: list[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--out", type=Path, metavar="DIR", help="where bag, report and logs go; default out/<date>")
     parser.add_argument("--operator", choices=["weak", "normal", "firm"], default="normal", help="the simulated hand")
     parser.add_argument("--motion", help="what the hands do: a name that the console knows, or a recorded motion file")
+    parser.add_argument(
+        "--hosting",
+        choices=["separate", "realtime"],
+        default="separate",
+        help="a process each law, or all laws in one real-time loop",
+    )
     parser.add_argument("--seed", type=int, default=1, help="of everything random in the simulation")
     arguments = parser.parse_args(argv)
     if arguments.duration is not None and not 0 < arguments.duration <= 86400:
@@ -64,6 +70,7 @@ def launch_arguments(arguments: argparse.Namespace, out: Path) -> dict[str, str]
         "record": "true",
         "bag": str(out / "session.bag"),
         "operator": arguments.operator,
+        "hosting": arguments.hosting,
         "seed": str(arguments.seed),
         "auto_engage": "false",
         "trace_laws": "true",
@@ -125,7 +132,7 @@ def publish_session_facts(arguments: argparse.Namespace) -> object:
         ["git", "-C", str(ROOT), "describe", "--always", "--dirty"], capture_output=True, text=True, check=False
     )
     facts = {
-        "hosting": "separate",
+        "hosting": arguments.hosting,
         "operator": arguments.operator,
         "motion": arguments.motion or declared_arguments().get("motion"),
         "rate_hz": round(1.0 / nominal["transparency"]["period_s"], 3),

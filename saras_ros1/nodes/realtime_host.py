@@ -134,16 +134,16 @@ class RealtimeHost(Node):
 
     def _publish(self) -> None:
         """A thread of its own: the newest step, as soon as it is there and the last one is old enough."""
-        published_s = 0.0
+        due_s = 0.0
         while not rospy.is_shutdown():
             if not self.host.wait(0.1):
                 continue
             now = time.monotonic()
             self._stepped_s = now
             # A little early is on time: steps come with the console's own jitter.
-            if now - published_s < 0.8 * self.publish_period_s:
+            if now < due_s - 0.5 * self.publish_period_s:
                 continue
-            published_s = now
+            due_s = max(due_s + self.publish_period_s, now)
             try:
                 snapshot = self.host.snapshot()
                 if snapshot.held and not self._held:
