@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent))
+import latency
 import peers
 import pipeline
 import scenario
@@ -23,7 +24,7 @@ import struct_codec
 from saras import net
 
 PYTHON_PEERS = {"teleop": ("numpy", peers.teleop), "codec": ("struct", peers.codec)}
-GROUPS = [*PYTHON_PEERS, "collision"]
+GROUPS = [*PYTHON_PEERS, "collision", "latency"]
 TOLERANCE = 1e-9
 COLLISION_PAIRS = 100_000
 COAL_TOLERANCE = 1e-6
@@ -94,11 +95,14 @@ def run_collision(program):
     return rows
 
 
-def run(groups, program):
+def run(groups, program, soak_s=0.0):
     """Rows of the given groups in the format of the JSON file."""
     python_groups = [group for group in groups if group in PYTHON_PEERS]
     rows = run_python_peers(python_groups, program) if python_groups else []
-    return rows + (run_collision(program) if "collision" in groups else [])
+    rows += run_collision(program) if "collision" in groups else []
+    if "latency" in groups:
+        rows += latency.run(program.with_name("saras_latency_benchmark"), soak_s)
+    return rows
 
 
 def run_python_peers(groups, program):
@@ -135,6 +139,9 @@ def show(rows):
     for heading in ("ours", "peer", "their p50 : ours"):
         table.add_column(heading, justify="right")
     for row in rows:
+        if not row["peers"]:
+            ours = " / ".join(f"{row['ours'][p]:,.0f}" for p in ("p50", "p99"))
+            table.add_row(row["group"], row["name"], row["unit"], ours, "", "")
         for peer, times in row["peers"].items():
             ours = f"{row['ours']['p50']:,.0f} / {row['ours']['p99']:,.0f}"
             theirs = f"{peer} {times['p50']:,.0f} / {times['p99']:,.0f}"
@@ -148,13 +155,14 @@ def main():
     )
     parser.add_argument("groups", nargs="*", metavar="GROUP", help=f"of {', '.join(GROUPS)}; default: all")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the rows there too")
+    parser.add_argument("--soak", type=float, default=0.0, metavar="S", help="of the group latency: also S seconds")
     parser.add_argument("--program", type=Path, required=True, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     unknown = set(arguments.groups) - set(GROUPS)
     if unknown:
         parser.error(f"unknown group {', '.join(sorted(unknown))}; there are {', '.join(GROUPS)}")
     try:
-        rows = run(arguments.groups or list(GROUPS), arguments.program)
+        rows = run(arguments.groups or list(GROUPS), arguments.program, arguments.soak)
     except NotTheSame as error:
         print(f"script/bench: {error}", file=sys.stderr)
         return 1
