@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import hmac
 import random
+import sys
 import zlib
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -28,6 +30,9 @@ from saras.net.trust import (
     TrustError,
     tag,
 )
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "faults"))
+from support import results
 
 KEYS = Keys(bytes(range(32)), bytes(range(32, 64)))
 OTHER = Keys(bytes(range(64, 96)), bytes(range(96, 128)))
@@ -345,13 +350,19 @@ def test_forged_replayed_and_truncated_datagrams_in_bulk(pair, many):
     recorded = [console.data(0)[0] for _ in range(50)]
     for datagram in recorded:
         platform.receive(datagram, 0)
-    for _ in range(2000 * many):
-        kind = rng.randrange(3)
-        datagram = rng.choice(recorded)
-        if kind == 0:
-            datagram = seal(datagram, rng.randbytes(16))
-        elif kind == 1:
-            datagram = datagram[: rng.randrange(len(datagram))]
-        assert platform.receive(datagram, 0) == []
-    assert len(platform.accepted) == 50
-    assert platform.receive(console.data(0)[0], 0) == [] and len(platform.accepted) == 51
+    count = 2000 * many
+    test = "tests/property/test_touchball_trust.py::test_forged_replayed_and_truncated_datagrams_in_bulk"
+    with results.recorded(
+        results.Row(7, f"{count} forged, replayed, truncated datagrams to one end", test, "bulk")
+    ) as row:
+        for _ in range(count):
+            kind = rng.randrange(3)
+            datagram = rng.choice(recorded)
+            if kind == 0:
+                datagram = seal(datagram, rng.randbytes(16))
+            elif kind == 1:
+                datagram = datagram[: rng.randrange(len(datagram))]
+            assert platform.receive(datagram, 0) == []
+        assert len(platform.accepted) == 50
+        assert platform.receive(console.data(0)[0], 0) == [] and len(platform.accepted) == 51
+        row.saw("none accepted, and the true one that follows is (the link's end alone, without sockets)")

@@ -1,0 +1,1 @@
+"""What the fault injections share: the platform as real processes, faults to do to them, eyes to see with."""
