@@ -5,6 +5,7 @@ It only says so: every receiver has its own watchdog and treats silence of this 
 
 from __future__ import annotations
 
+import socket
 import time
 
 import rosgraph
@@ -17,7 +18,7 @@ from saras.safety import MAX_OPERATORS, SafetyState
 from saras_ros1.channel import SIDES
 from saras_ros1.estop_latch import EstopLatch
 from saras_ros1.msg import SideFault
-from saras_ros1.node import Node, run
+from saras_ros1.node import SOCKET_TIMEOUT_S, Node, run
 from saras_ros1.operator_ask import Ask
 from saras_ros1.params import Params
 from saras_ros1.platform_supervisor import PlatformSupervisor, Side
@@ -172,6 +173,8 @@ class Supervisor(Node):
                 side.changed()
 
     def _check_master(self) -> None:
+        # Each time: rospy sets it to a minute whenever it connects to a publisher.
+        socket.setdefaulttimeout(SOCKET_TIMEOUT_S)
         try:
             rosgraph.Master("/supervisor").getPid()
             answers = True
