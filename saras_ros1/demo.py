@@ -71,6 +71,7 @@ def launch_arguments(arguments: argparse.Namespace, out: Path) -> dict[str, str]
         "bag": str(out / "session.bag"),
         "operator": arguments.operator,
         "hosting": arguments.hosting,
+        "flight_records": str(out / "flight"),
         "seed": str(arguments.seed),
         "auto_engage": "false",
         "trace_laws": "true",

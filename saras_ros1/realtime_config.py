@@ -194,7 +194,7 @@ def _read_console(
         bind_port=params.integer("bind_port", 0, 65535),
         console_host=params.text("console_host"),
         console_port=params.integer("console_port", 1, 65535),
-        age_limit_s=params.number("age_limit_s", 0.005, 10.0),
+        age_limit_s=params.number("age_limit_s", 0.005, 1.0),
         keyed=keys is not None,
         session=session,
     )

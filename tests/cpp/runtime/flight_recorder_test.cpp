@@ -9,12 +9,9 @@
 
 #include "pipeline/rig.hpp"
 #include "saras/spatial/errors.hpp"
-#include "support/malloc_counter.hpp"
 
 namespace saras {
 namespace {
-
-constexpr Seconds kDt = 0.001;
 
 /// A file that is gone after the test.
 struct TemporaryFile {
@@ -112,25 +109,6 @@ TEST(FlightRecorder, RefusesWhatIsNoRecord) {
   std::ofstream(file.path, std::ios::binary | std::ios::trunc) << other;
   EXPECT_THROW(read_flight(file.path), ProtocolError);
   EXPECT_THROW(recorder.write("/nowhere/at/all", config, ""), Error);
-}
-
-TEST(FlightRecorder, RecordingAllocatesNothing) {
-  if (!test::can_count) {
-    GTEST_SKIP() << "the sanitizer owns malloc";
-  }
-  Pipeline pipeline(test::pipeline_config(true));
-  FlightRecorder recorder(3, 20);
-  test::PipelineRig rig(4);
-  rig.next();
-  const test::MallocCounter counter;
-  for (int k = 0; k < 200; ++k) {
-    FlightTick* tick = recorder.begin(pipeline);
-    ASSERT_NE(tick, nullptr);
-    tick->input = rig.input();
-    tick->output = pipeline.step(tick->input, kDt);
-    recorder.commit();
-  }
-  EXPECT_EQ(counter.count(), 0u);
 }
 
 // Run by script/sanitize thread as well.
