@@ -1,5 +1,6 @@
 #include "casters.hpp"
 #include "rooms.hpp"
+#include "saras/calibration/calibration_error.hpp"
 #include "saras/spatial/errors.hpp"
 #include "saras/spatial/rotation.hpp"
 #include "saras/spatial/status.hpp"
@@ -15,6 +16,7 @@ void bind_spatial(py::module_& m) {
   static py::exception<ConfigError> config_error(m, "ConfigError", value_bases);
   static py::exception<ProtocolError> protocol_error(m, "ProtocolError", value_bases);
   static py::exception<KinematicsError> kinematics_error(m, "KinematicsError", value_bases);
+  static py::exception<CalibrationError> calibration_error(m, "CalibrationError", value_bases);
   py::register_exception_translator([](std::exception_ptr pointer) {
     try {
       if (pointer) {
@@ -24,6 +26,8 @@ void bind_spatial(py::module_& m) {
       py::set_error(config_error, e.what());
     } catch (const ProtocolError& e) {
       py::set_error(protocol_error, e.what());
+    } catch (const CalibrationError& e) {
+      py::set_error(calibration_error, e.what());
     } catch (const KinematicsError& e) {
       py::set_error(kinematics_error, e.what());
     } catch (const Error& e) {

@@ -11,6 +11,8 @@ PYBIND11_MODULE(_core, m) {
   saras::bindings::bind_kinematics(kinematics);
   auto collision = m.def_submodule("collision", "Distances between tools and forbidden regions");
   saras::bindings::bind_collision(collision);
+  auto calibration = m.def_submodule("calibration", "Base frames from touched dots, hand-eye, the board");
+  saras::bindings::bind_calibration(calibration);
   auto sim = m.def_submodule("sim", "Simulated arm, tissue, hand and network");
   saras::bindings::bind_sim(sim);
   auto net = m.def_submodule("net", "Datagram codecs");

@@ -9,6 +9,7 @@ void bind_spatial(pybind11::module_& m);
 void bind_teleop(pybind11::module_& m);
 void bind_kinematics(pybind11::module_& m);
 void bind_collision(pybind11::module_& m);
+void bind_calibration(pybind11::module_& m);
 void bind_sim(pybind11::module_& m);
 void bind_net(pybind11::module_& m);
 void bind_safety(pybind11::module_& m);

@@ -4,7 +4,25 @@ Conventions everywhere: SI units; poses are (4, 4) float64 named ``a_T_b``; twis
 linear/force first; a wrench is what the robot exerts on its surroundings.
 """
 
-from saras._core import ConfigError, Error, KinematicsError, ProtocolError, Status, add_delta, displacement
+from saras._core import (
+    CalibrationError,
+    ConfigError,
+    Error,
+    KinematicsError,
+    ProtocolError,
+    Status,
+    add_delta,
+    displacement,
+)
 
 __version__ = "0.1.0"
-__all__ = ["ConfigError", "Error", "KinematicsError", "ProtocolError", "Status", "add_delta", "displacement"]
+__all__ = [
+    "CalibrationError",
+    "ConfigError",
+    "Error",
+    "KinematicsError",
+    "ProtocolError",
+    "Status",
+    "add_delta",
+    "displacement",
+]

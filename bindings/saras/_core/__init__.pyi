@@ -10,6 +10,7 @@ import typing
 from . import teleop
 from . import kinematics
 from . import collision
+from . import calibration
 from . import sim
 from . import net
 from . import safety
@@ -18,12 +19,14 @@ from . import pipeline
 from . import runtime
 
 __all__: list[str] = [
+    "CalibrationError",
     "ConfigError",
     "Error",
     "KinematicsError",
     "ProtocolError",
     "Status",
     "add_delta",
+    "calibration",
     "collision",
     "console",
     "displacement",
@@ -46,6 +49,9 @@ class ProtocolError(Error, ValueError):
     pass
 
 class KinematicsError(Error, ValueError):
+    pass
+
+class CalibrationError(Error, ValueError):
     pass
 
 class Status:
