@@ -13,7 +13,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
 ROS_OR_PYTHON = re.compile(
-    r"^(ros/|tf2|nodelet|pluginlib|image_transport|cv_bridge|\w+_msgs/|Python\.h|pybind11/|numpy/|patchlevel\.h)"
+    r"^(visp3?/|ros/|tf2|nodelet|pluginlib|image_transport|cv_bridge|\w+_msgs/|Python\.h|pybind11/|numpy/|patchlevel\.h)"
 )
 
 
