@@ -17,6 +17,7 @@ import saras
 
 #: name: (module, one line for --help)
 COMMANDS: dict[str, tuple[str, str]] = {
+    "board": ("saras.calibration.board_command", "make the calibration board: PDF, SVG, YAML"),
     "console": ("saras.console.command", "read the two handles, guard their ports, talk to the platform over UDP"),
     "keys": ("saras.net.command", "make and check the key file of a console's link over a network"),
     "regions": ("saras.collision.command", "make forbidden regions from a bone's mesh, or check a file of them"),
@@ -33,6 +34,7 @@ OPTIONAL_LIBRARIES = {
     "trimesh": "saras[regions]",
     "scipy": "saras[regions]",
     "yaml": "saras[regions]",
+    "cv2": "saras[calibration]",
     "rich": "saras[console]",
     "pygame": "saras[console]",
     "pyOpenHaptics": "saras[haptics]",
