@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent))
+import calibration
 import latency
 import peers
 import pipeline
@@ -24,7 +25,8 @@ import struct_codec
 from saras import net
 
 PYTHON_PEERS = {"teleop": ("numpy", peers.teleop), "codec": ("struct", peers.codec)}
-GROUPS = [*PYTHON_PEERS, "collision", "latency"]
+GROUPS = [*PYTHON_PEERS, "collision", "calibration", "latency"]
+BENCH_PYTHON = Path(__file__).parents[1] / "bench-venv" / "bin" / "python"
 TOLERANCE = 1e-9
 COLLISION_PAIRS = 100_000
 COAL_TOLERANCE = 1e-6
@@ -100,6 +102,7 @@ def run(groups, program, soak_s=0.0):
     python_groups = [group for group in groups if group in PYTHON_PEERS]
     rows = run_python_peers(python_groups, program) if python_groups else []
     rows += run_collision(program) if "collision" in groups else []
+    rows += calibration.run(BENCH_PYTHON) if "calibration" in groups else []
     if "latency" in groups:
         rows += latency.run(program.with_name("saras_latency_benchmark"), soak_s)
     return rows
@@ -135,16 +138,22 @@ def show(rows):
     from rich.console import Console
     from rich.table import Table
 
-    table = Table("group", "name", "unit", title="p50 / p99 of single calls", title_justify="left")
+    table = Table(
+        "group",
+        "name",
+        "unit",
+        title="p50 / p99 of single calls (calibration: of errors; their mean : ours)",
+        title_justify="left",
+    )
     for heading in ("ours", "peer", "their p50 : ours"):
         table.add_column(heading, justify="right")
     for row in rows:
+        digits = 3 if row["group"] == "calibration" else 0
+        ours = " / ".join(f"{row['ours'][p]:,.{digits}f}" for p in ("p50", "p99"))
         if not row["peers"]:
-            ours = " / ".join(f"{row['ours'][p]:,.0f}" for p in ("p50", "p99"))
             table.add_row(row["group"], row["name"], row["unit"], ours, "", "")
         for peer, times in row["peers"].items():
-            ours = f"{row['ours']['p50']:,.0f} / {row['ours']['p99']:,.0f}"
-            theirs = f"{peer} {times['p50']:,.0f} / {times['p99']:,.0f}"
+            theirs = f"{peer} {times['p50']:,.{digits}f} / {times['p99']:,.{digits}f}"
             table.add_row(row["group"], row["name"], row["unit"], ours, theirs, f"{row['ratio'][peer]:.1f}")
     Console(width=None if sys.stdout.isatty() else 120).print(table)
 
@@ -163,7 +172,7 @@ def main():
         parser.error(f"unknown group {', '.join(sorted(unknown))}; there are {', '.join(GROUPS)}")
     try:
         rows = run(arguments.groups or list(GROUPS), arguments.program, arguments.soak)
-    except NotTheSame as error:
+    except (NotTheSame, calibration.NoResult) as error:
         print(f"script/bench: {error}", file=sys.stderr)
         return 1
     show(rows)
