@@ -18,6 +18,7 @@ import saras
 #: name: (module, one line for --help)
 COMMANDS: dict[str, tuple[str, str]] = {
     "board": ("saras.calibration.board_command", "make the calibration board: PDF, SVG, YAML"),
+    "calibrate": ("saras.calibration.calibrate_command", "calibrate arms, endoscope and cameras, step by step"),
     "console": ("saras.console.command", "read the two handles, guard their ports, talk to the platform over UDP"),
     "keys": ("saras.net.command", "make and check the key file of a console's link over a network"),
     "regions": ("saras.collision.command", "make forbidden regions from a bone's mesh, or check a file of them"),

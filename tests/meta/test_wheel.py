@@ -33,7 +33,8 @@ def fresh_python(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_it_imports_without_ros(fresh_python: Path, tmp_path: Path) -> None:
-    done = run(fresh_python, "-c", "import saras.teleop, saras.kinematics, saras.sim, saras.net", cwd=tmp_path)
+    rooms = "import saras.teleop, saras.kinematics, saras.sim, saras.net, saras.calibration"
+    done = run(fresh_python, "-c", rooms, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert run(fresh_python, "-c", "import rospy", cwd=tmp_path).returncode != 0
 

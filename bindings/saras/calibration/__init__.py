@@ -7,16 +7,28 @@ made from raise CalibrationError.
 
 from saras._core.calibration import FrameFromPoints, frame_from_points, frame_from_three_points
 from saras.calibration.board import Board, board
+from saras.calibration.calibration_file import BaseFrame, Calibration
 from saras.calibration.hand_eye import HandEye, HandEyeNoise, hand_eye, rotation_spread
+from saras.calibration.registration import Arm, Registration, View
+from saras.calibration.stereo import Charuco, Checkerboard, Stereo, stereo
 
 __all__ = [
+    "Arm",
+    "BaseFrame",
     "Board",
+    "Calibration",
+    "Charuco",
+    "Checkerboard",
     "FrameFromPoints",
     "HandEye",
     "HandEyeNoise",
+    "Registration",
+    "Stereo",
+    "View",
     "board",
     "frame_from_points",
     "frame_from_three_points",
     "hand_eye",
     "rotation_spread",
+    "stereo",
 ]
