@@ -53,9 +53,9 @@ def test_console_runs(fresh_python: Path, tmp_path: Path) -> None:
         "--duration",
         "2",
         "--platform",
-        "127.0.0.1:48990",
+        "127.0.0.1:28990",
         "--listen",
-        "127.0.0.1:48991",
+        "127.0.0.1:28991",
     ]
     done = run(saras, "console", *arguments, cwd=tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr

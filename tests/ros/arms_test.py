@@ -29,7 +29,7 @@ from saras.mesa_link import ArmLinkError, SocketIoArmDriver
 from saras_ros1 import convert
 
 PATIENCE_S = 20.0  # an upper bound for waiting, never a measure
-URL = {"left": "http://127.0.0.1:48320", "right": "http://127.0.0.1:48321"}
+URL = {"left": "http://127.0.0.1:28320", "right": "http://127.0.0.1:28321"}
 
 
 def eventually(condition, what: str) -> None:
@@ -355,7 +355,7 @@ class Arms(unittest.TestCase):
             return False
 
     def test_d3_dead_arm_is_a_fault_and_the_other_goes_on(self) -> None:
-        os.kill(sibling("--port 48320"), signal.SIGKILL)
+        os.kill(sibling("--port 28320"), signal.SIGKILL)
         eventually(lambda: self.left.shows("FAULT"), "fault")
         goal = self.right.engage(0.0, 0.004, 0.0)
         eventually(lambda: self.right.at(goal), "the other arm follows")

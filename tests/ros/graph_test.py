@@ -73,7 +73,7 @@ class GraphTest(unittest.TestCase):
         rospy.init_node("graph_test")
         cls.hosting = rospy.get_param("~hosting", "separate")
         cls.link, cls.laws = HOSTS[cls.hosting]
-        cls.console = FakeConsole(rospy.get_param("~bind_port", 48110), rospy.get_param("~console_port", 48111))
+        cls.console = FakeConsole(rospy.get_param("~bind_port", 28110), rospy.get_param("~console_port", 28111))
         cls.console.motion = circle(cls.console)
         cls.console.start()
         cls.state = {s: Newest(f"/system/{s}/state", ChannelState) for s in SIDES}

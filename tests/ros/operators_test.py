@@ -31,7 +31,7 @@ class OperatorsTest(unittest.TestCase):
         rospy.init_node("operators_test")
         cls.directory = tempfile.TemporaryDirectory()
         cls.estop_file = Path(cls.directory.name, "estop")
-        cls.assistant, cls.colleague = FakeConsole(48130, 48131), FakeConsole(48132, 48133)
+        cls.assistant, cls.colleague = FakeConsole(28130, 28131), FakeConsole(28132, 28133)
         # Far apart, so that whose hand it is shows.
         for side in SIDES:
             cls.assistant.position[side] = np.array([0.02, 0.0, -0.22])
