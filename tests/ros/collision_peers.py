@@ -64,6 +64,7 @@ class Peers:
         self._channel = rospy.Publisher("/system/left/state", ChannelState, queue_size=5)
         rospy.Subscriber("/mesa_left/set_point", PoseStamped, self._follow, queue_size=1)
         self.follows = False
+        self._listeners = self._ready_for = self._engagement = 0
         threading.Thread(target=self._run, daemon=True).start()
 
     def _follow(self, message: PoseStamped) -> None:
@@ -90,7 +91,14 @@ class Peers:
             self._modes[name].publish(message)
         if self.bones is not None:
             self.tf.publish(TFMessage([convert.transform_msg(self.bones, "world", "bones_marker_frame", now)]))
-        channel = ChannelState(side="left", state=ChannelState.ENGAGED, engagement=1)
+        # A node has no part in an engagement that is older than itself: who comes new sees one begin.
+        listeners = self._channel.get_num_connections()
+        if listeners != self._listeners:
+            self._listeners, self._ready_for = listeners, 20
+            self._engagement += 1
+        self._ready_for -= 1
+        state = ChannelState.READY if self._ready_for > 0 else ChannelState.ENGAGED
+        channel = ChannelState(side="left", state=state, engagement=self._engagement)
         channel.header.stamp = now
         self._channel.publish(channel)
         if self.twist is not None:
