@@ -85,6 +85,7 @@ Information parameter_covariance(const std::vector<HandEyePair>& pairs, const st
                                  const std::vector<Jacobian>& jacobians, const std::vector<Matrix6>& covariances,
                                  const std::vector<bool>& used, const HandEyeOptions& options) {
   std::vector<Matrix6> weights;
+  weights.reserve(covariances.size());
   for (const auto& covariance : covariances) {
     weights.push_back(covariance.inverse());
   }
