@@ -46,7 +46,7 @@ EnergyTankOutput TankNode::step(EnergyTankInput& input, Seconds dt) noexcept {
   }
   input.requesting_peers = asking;
   input.peer_has_room = roomy > 0;
-  const EnergyTankOutput out = tank_.step(input, dt);
+  EnergyTankOutput out = tank_.step(input, dt);
   const double answer_J = out.sent_J - out.sent_overflow_J;
   for (int i = 0; i < peers_; ++i) {
     TankPeerState& peer = peer_[static_cast<std::size_t>(i)];
