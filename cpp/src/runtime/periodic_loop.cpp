@@ -33,7 +33,7 @@ void LoopConfig::validate() const {
 }
 
 PeriodicLoop::PeriodicLoop(LoopConfig config, Step step, int descriptor)
-    : config_((config.validate(), std::move(config))),
+    : config_((config.validate(), config)),
       step_(std::move(step)),
       descriptor_(descriptor),
       stop_event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
