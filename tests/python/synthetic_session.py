@@ -194,6 +194,10 @@ def write_side(bag: BagWriter, side: str, t: float) -> None:
         state=state,
         engagement=1,
         clutch=6.0 <= t < 7.0,
+        estop=False,
+        holder="assistant",
+        offered_to="",
+        misaligned="",
         reason=reason,
         advice=advice,
     )
