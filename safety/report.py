@@ -34,7 +34,7 @@ def hazards() -> list[Hazard]:
 
 
 def results(directory: Path) -> dict[tuple[str, str], list[str]]:
-    """(file's stem, test) → "passed", "failed" or "skipped", one a run; from JUnit files of pytest, gtest, rostest."""
+    """(file's stem, test) → "passed", "failed" or "skipped", one a run; of JUnit files and of rostest's logs."""
     found: dict[tuple[str, str], list[str]] = {}
     for path in sorted(directory.rglob("*.xml")):
         try:
@@ -45,17 +45,28 @@ def results(directory: Path) -> dict[tuple[str, str], list[str]]:
             kinds = {child.tag for child in case}
             verdict = "failed" if kinds & {"failure", "error"} else "skipped" if "skipped" in kinds else "passed"
             name = re.sub(r"\[.*\]$", "", case.get("name", "")).split("/")[0]
-            found.setdefault((stem_of(case, path), name), []).append(verdict)
+            found.setdefault((stem_of(case), name), []).append(verdict)
+    for path in sorted(directory.rglob("*.log")):
+        read_rostest(path, found)
     return found
 
 
-def stem_of(case: xml.etree.ElementTree.Element, path: Path) -> str:
+def read_rostest(path: Path, found: dict[tuple[str, str], list[str]]) -> None:
+    """Adds what rostest --text said, in a file named after the test: NAME.log of NAME_test.py. It writes no JUnit."""
+    text = path.read_text(encoding="utf-8", errors="replace")
+    bad = set(re.findall(r"test_\w+", " ".join(re.findall(r"\* (?:FAILURES|ERRORS): \d+ \[(.*)\]", text))))
+    if "* TESTS:" not in text:
+        return
+    stem = path.stem.removesuffix("_realtime") + "_test"
+    for name in sorted(set(re.findall(r"(test_\w+) \(__main__", text))):
+        found.setdefault((stem, name), []).append("failed" if name in bad else "passed")
+
+
+def stem_of(case: xml.etree.ElementTree.Element) -> str:
     """The test file's name without suffix, as far as the runners tell."""
     if case.get("file"):  # gtest
         return Path(case.get("file", "")).stem
     classname = case.get("classname", "")
-    if path.name.startswith("rosunit-"):  # "__main__.GraphTest": the file is named after the test
-        return path.stem.removeprefix("rosunit-") + "_test"
     parts = [part for part in classname.split(".") if part.startswith("test_") or part.endswith("_test")]
     return parts[-1] if parts else classname
 
@@ -63,7 +74,7 @@ def stem_of(case: xml.etree.ElementTree.Element, path: Path) -> str:
 def verdict(shown_by: str, found: dict[tuple[str, str], list[str]]) -> str:
     """What the last runs of one test, or of all tests of a file, said."""
     path, _, name = shown_by.partition("::")
-    if path.startswith("script/") or path.startswith(("benchmarks/", "safety/")):
+    if path.startswith(("script/", "benchmarks/", "safety/", "tests/fuzz/")):
         return "by command"
     stem = Path(path).stem
     said = [word for (file, test), words in found.items() if file == stem and name in ("", test) for word in words]
