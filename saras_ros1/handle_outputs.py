@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import rospy
 from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import JointState, Joy
 
 from saras.net import TouchballUpSide
-from saras_ros1 import convert
+from saras_ros1 import convert, tank_messages
 from saras_ros1.msg import TankExchange, TankState
 from saras_ros1.node import Node
-from saras_ros1.stamped import NANOSECONDS
+from saras_ros1.stamped import time_of
 
 
 class HandleOutputs:
@@ -39,55 +38,34 @@ class HandleOutputs:
         if self.count % self.buttons_every == 0 or pressed != self.pressed:
             self.pressed = pressed
             buttons = Joy(axes=[up.grip], buttons=pressed)
-            buttons.header.stamp = _time(stamp_ns)
+            buttons.header.stamp = time_of(stamp_ns)
             self.buttons.publish(buttons)
         if self.count % self.state_every == 0:
-            self._publish_state(up, _time(stamp_ns), ledger_session)
-            self._publish_guard(up, seq, _time(stamp_ns))
+            self._publish_state(up, stamp_ns, ledger_session)
+            self._publish_guard(up, seq, stamp_ns)
         self.pose.publish(convert.pose_msg(up.simball_T_handle, f"{self.console}/simball_base", stamp_ns))
 
-    def _publish_state(self, up: TouchballUpSide, stamp: rospy.Time, ledger_session: int) -> None:
-        ledger, joints = up.ledger, up.joints
-        exchange = TankExchange(
-            session=ledger_session,
-            seq=ledger.seq,
-            sent_J=ledger.sent_J,
-            requesting=ledger.requesting,
-            has_room=ledger.has_room,
-        )
+    def _publish_state(self, up: TouchballUpSide, stamp_ns: int, ledger_session: int) -> None:
+        ledger, joints, stamp = up.ledger, up.joints, time_of(stamp_ns)
+        exchange = tank_messages.exchange(ledger_session, ledger.seq, ledger.sent_J, wishes=ledger, stamp_ns=stamp_ns)
         grip = JointState(name=self.grip_name, position=[up.grip])
         angles = [joints.yaw_rad, joints.pitch_rad, joints.roll_rad, joints.insertion_m]
         state = JointState(name=self.joint_names, position=angles)
-        exchange.header.stamp = grip.header.stamp = state.header.stamp = stamp
+        grip.header.stamp = state.header.stamp = stamp
         self.exchange.publish(exchange)
         self.grip.publish(grip)
         self.joints.publish(state)
 
-    def _publish_guard(self, up: TouchballUpSide, seq: int, stamp: rospy.Time) -> None:
-        guard = up.guard
-        state = TankState(
-            seq=seq,
-            session=up.ledger.session,
-            energy_J=guard.energy_J,
-            minimum_J=guard.minimum_J,
-            request_J=guard.request_J,
-            available_J=guard.available_J,
-            maximum_J=guard.maximum_J,
-            reduction=guard.reduction,
-            scale=guard.scale,
-            damping=guard.damping.tolist(),
-            work_out_J=guard.work_out_J,
-            received_J=guard.received_J,
-            sent_J=up.ledger.sent_J,
-            vented_J=guard.vented_J,
-            granted_J=guard.granted_J,
-            requesting=up.ledger.requesting,
-            has_room=up.ledger.has_room,
-            status=guard.status.name,
+    def _publish_guard(self, up: TouchballUpSide, seq: int, stamp_ns: int) -> None:
+        guard, ledger = up.guard, up.ledger
+        state = tank_messages.state(
+            ledger.session,
+            seq,
+            levels=guard,
+            out=guard,
+            sums=guard,
+            sent_J=ledger.sent_J,
+            wishes=ledger,
+            stamp_ns=stamp_ns,
         )
-        state.header.stamp = stamp
         self.guard.publish(state)
-
-
-def _time(stamp_ns: int) -> rospy.Time:
-    return rospy.Time(*divmod(stamp_ns, NANOSECONDS))

@@ -8,7 +8,7 @@ from typing import Any, Callable, NamedTuple
 
 import rospy
 
-from saras_ros1.stamped import NANOSECONDS, Stamped
+from saras_ros1.stamped import NANOSECONDS, Stamped, time_of
 
 CLOCK_STEP_S = 1.0
 HEARTBEAT_S = 0.1
@@ -28,7 +28,7 @@ class Tick(NamedTuple):
     @property
     def stamp(self) -> rospy.Time:
         """stamp_ns as a ROS time."""
-        return rospy.Time(*divmod(self.stamp_ns, NANOSECONDS))
+        return time_of(self.stamp_ns)
 
 
 class Input:

@@ -9,17 +9,12 @@ from geometry_msgs.msg import PoseStamped, TwistStamped, WrenchStamped
 from tf2_msgs.msg import TFMessage
 
 from saras.runtime import HostSnapshot
-from saras_ros1 import convert
+from saras_ros1 import convert, tank_messages
 from saras_ros1.channel import SIDES, base_frame
 from saras_ros1.handle_outputs import HandleOutputs
 from saras_ros1.msg import TankExchange, TankState
 from saras_ros1.node import Node
 from saras_ros1.realtime_config import Publishing
-from saras_ros1.stamped import NANOSECONDS
-
-
-def _time(stamp_ns: int) -> rospy.Time:
-    return rospy.Time(*divmod(stamp_ns, NANOSECONDS))
 
 
 class SideTopics:
@@ -62,9 +57,8 @@ class SideTopics:
         self.twist.publish(convert.twist_msg(out.twist, self.frame, stamp_ns))
         if count % self._every.exchange_every["tank_master"] == 0:
             ledger = out.to_guard
-            self.ledger.publish(
-                _exchange((ledger.session, ledger.seq, ledger.sent_J), ledger.requesting, ledger.has_room, stamp_ns)
-            )
+            sums = (ledger.session, ledger.seq, ledger.sent_J)
+            self.ledger.publish(tank_messages.exchange(*sums, wishes=ledger, stamp_ns=stamp_ns))
         if out.has_set_point and count % self._every.tf_every == 0:
             child = f"mesa_{self.side}/set_point"
             transform = convert.transform_msg(out.set_point, self.frame, child, rospy.Time.now())
@@ -84,32 +78,20 @@ class TankTopics:
     def publish(self, out: Any, count: int, stamp_ns: int) -> None:
         """out: TankOutput."""
         if count % self._exchange_every == 0:
-            self._exchange.publish(_exchange(out.to_peer, out.requesting, out.has_room, stamp_ns))
+            self._exchange.publish(tank_messages.exchange(*out.to_peer, wishes=out, stamp_ns=stamp_ns))
         if count % self._state_every:
             return
         self._seq += 1
-        config = self._config
-        message = TankState(
-            seq=self._seq,
-            session=self._session,
-            energy_J=out.energy_J,
-            minimum_J=config.minimum_J,
-            request_J=config.request_J,
-            available_J=config.available_J,
-            maximum_J=config.maximum_J,
-            reduction=out.reduction,
-            scale=out.scale,
-            damping=out.damping.tolist(),
-            work_out_J=out.work_out_J,
-            received_J=out.received_J,
+        message = tank_messages.state(
+            self._session,
+            self._seq,
+            levels=self._config,
+            out=out,
+            sums=out,
             sent_J=out.sent_J,
-            vented_J=out.vented_J,
-            granted_J=out.granted_J,
-            requesting=out.requesting,
-            has_room=out.has_room,
-            status=out.status.name,
+            wishes=out,
+            stamp_ns=stamp_ns,
         )
-        message.header.stamp = _time(stamp_ns)
         self._state.publish(message)
 
 
@@ -135,10 +117,3 @@ class Topics:
             topics.publish(getattr(tick.output, side), handle, self._count, tick.stamp_ns)
         for name, topics in self._tanks.items():
             topics.publish(getattr(tick.output, name), self._count, tick.stamp_ns)
-
-
-def _exchange(sums: tuple[int, int, float], requesting: bool, has_room: bool, stamp_ns: int) -> TankExchange:
-    session, seq, sent_J = sums
-    message = TankExchange(session=session, seq=seq, sent_J=sent_J, requesting=requesting, has_room=has_room)
-    message.header.stamp = _time(stamp_ns)
-    return message

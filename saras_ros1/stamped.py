@@ -16,6 +16,12 @@ from geometry_msgs.msg import PoseStamped, TwistStamped, WrenchStamped
 
 NANOSECONDS = 1_000_000_000
 
+
+def time_of(stamp_ns: int) -> rospy.Time:
+    """Nanoseconds as a ROS time."""
+    return rospy.Time(*divmod(stamp_ns, NANOSECONDS))
+
+
 _HEADER = struct.Struct("<4I")  # seq, secs, nsecs, length of frame_id
 _FRAME_AT = _HEADER.size
 _MAX_FRAMES = 1000  # remembered names; a peer that makes up new ones must not fill the memory
@@ -51,7 +57,7 @@ class Stamped(genpy.Message):
     @property
     def stamp(self) -> rospy.Time:
         """stamp_ns for those who compute with ROS times."""
-        return rospy.Time(*divmod(self.stamp_ns, NANOSECONDS))
+        return time_of(self.stamp_ns)
 
     def serialize(self, buff: Any) -> None:
         """Writes the standard message's bytes. Raises struct.error for a wrong count or kind of numbers."""

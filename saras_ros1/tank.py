@@ -6,9 +6,9 @@ import time
 from typing import Any
 
 import numpy as np
-import rospy
 
 from saras.teleop import EnergyTank, EnergyTankConfig, LedgerReceiver, LedgerSender
+from saras_ros1 import tank_messages
 from saras_ros1.inputs import Input
 from saras_ros1.msg import TankExchange, TankState
 from saras_ros1.node import Node, Tick
@@ -59,14 +59,10 @@ class Peer:
         """Adds energy to what this peer was sent."""
         self._sender.send(energy_J)
 
-    def publish(self, out: Any, stamp: rospy.Time) -> None:
+    def publish(self, out: Any, stamp_ns: int) -> None:
         """Tells this peer the sum, and what this tank wishes."""
         session, seq, sent_J = self._sender.next()
-        message = TankExchange(
-            session=session, seq=seq, sent_J=sent_J, requesting=out.requesting, has_room=out.has_room
-        )
-        message.header.stamp = stamp
-        self._output.publish(message)
+        self._output.publish(tank_messages.exchange(session, seq, sent_J, wishes=out, stamp_ns=stamp_ns))
 
 
 class Tank:
@@ -103,33 +99,21 @@ class Tank:
         self._ticks += 1
         if self._ticks % self._exchange_every == 0:
             for peer in self.peers:
-                peer.publish(out, tick.stamp)
+                peer.publish(out, tick.stamp_ns)
         if self._ticks % self._state_every == 0:
-            self._publish(out, tick.stamp)
+            self._publish(out, tick.stamp_ns)
         return out
 
-    def _publish(self, out: Any, stamp: rospy.Time) -> None:
-        state, config = self.law.state, self.config
+    def _publish(self, out: Any, stamp_ns: int) -> None:
         self._seq += 1
-        message = TankState(
-            seq=self._seq,
-            session=self.session,
-            energy_J=out.energy_J,
-            minimum_J=config.minimum_J,
-            request_J=config.request_J,
-            available_J=config.available_J,
-            maximum_J=config.maximum_J,
-            reduction=out.reduction,
-            scale=out.scale,
-            damping=out.damping.tolist(),
-            work_out_J=state.work_out_J,
-            received_J=state.received_J,
-            sent_J=state.sent_J,
-            vented_J=state.vented_J,
-            granted_J=state.granted_J,
-            requesting=out.requesting,
-            has_room=out.has_room,
-            status=out.status.name,
+        message = tank_messages.state(
+            self.session,
+            self._seq,
+            levels=self.config,
+            out=out,
+            sums=self.law.state,
+            sent_J=self.law.state.sent_J,
+            wishes=out,
+            stamp_ns=stamp_ns,
         )
-        message.header.stamp = stamp
         self._state_out.publish(message)

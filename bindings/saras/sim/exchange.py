@@ -8,7 +8,14 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from saras.teleop import EnergyTank, EnergyTankConfig, EnergyTankOutput, LedgerReceiver, LedgerSender
+from saras.teleop import (
+    EnergyTank,
+    EnergyTankConfig,
+    EnergyTankOutput,
+    EnergyTankState,
+    LedgerReceiver,
+    LedgerSender,
+)
 
 Array = npt.NDArray[np.float64]
 
@@ -81,6 +88,18 @@ class EnergyBook:
     sent_J: float = 0.0
     vented_J: float = 0.0
     lost_J: float = 0.0
+
+    def with_session(self, state: EnergyTankState) -> EnergyBook:
+        """These books of past sessions, and that of a tank as it is now."""
+        return EnergyBook(
+            state.energy_J,
+            self.granted_J + state.granted_J,
+            self.work_out_J + state.work_out_J,
+            self.received_J + state.received_J,
+            self.sent_J + state.sent_J,
+            self.vented_J + state.vented_J,
+            self.lost_J,
+        )
 
 
 class TankNode:
@@ -166,13 +185,4 @@ class TankNode:
 
     def book(self) -> EnergyBook:
         """All joules so far."""
-        state, past = self.tank.state, self._past
-        return EnergyBook(
-            state.energy_J,
-            past.granted_J + state.granted_J,
-            past.work_out_J + state.work_out_J,
-            past.received_J + state.received_J,
-            past.sent_J + state.sent_J,
-            past.vented_J + state.vented_J,
-            past.lost_J,
-        )
+        return self._past.with_session(self.tank.state)

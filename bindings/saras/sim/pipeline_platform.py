@@ -56,16 +56,7 @@ class PipelineTank:
 
     def book(self) -> EnergyBook:
         """All joules so far."""
-        state, past = self.state, self.past
-        return EnergyBook(
-            state.energy_J,
-            past.granted_J + state.granted_J,
-            past.work_out_J + state.work_out_J,
-            past.received_J + state.received_J,
-            past.sent_J + state.sent_J,
-            past.vented_J + state.vented_J,
-            past.lost_J,
-        )
+        return self.past.with_session(self.state)
 
     def close(self) -> None:
         """The process is killed: what the tank held is lost."""
