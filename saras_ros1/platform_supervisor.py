@@ -50,6 +50,7 @@ class Side:
         self.lease = Lease()
         self.lost_lease = ""  # why nobody holds it
         self.settled = 0  # looks in a row in which all was there
+        self.changes_hands = 0  # looks until the new holder's console is the source of this side
 
     @property
     def crtk(self) -> str:
@@ -63,7 +64,9 @@ class PlatformSupervisor:
     A sole operator's console takes free arms by itself; with several an arm is claimed. Silence must be seen in two
     looks in a row, so that one hiccup of this process latches nothing; motion and force do not wait for that, each
     receiver's own watchdog has stopped them at the limit. auto_engage engages each side once, when all was there for
-    settle_looks in a row; never out of HOLD. latched: reason of an E-stop from before this process.
+    settle_looks in a row; never out of HOLD. With several operators a side may be engaged hand_over_looks after it got
+    a new holder: the change of consoles is a silence that would end the engagement. latched: reason of an E-stop from
+    before this process.
     """
 
     def __init__(
@@ -73,6 +76,7 @@ class PlatformSupervisor:
         *,
         auto_engage: bool = False,
         settle_looks: int = 1,
+        hand_over_looks: int = 0,
         latched: str = "",
     ) -> None:
         self.sides = {name: Side(name) for name in sides}
@@ -80,6 +84,7 @@ class PlatformSupervisor:
         self._law = Supervisor(SupervisorConfig(channels=len(sides)))
         self._auto = dict.fromkeys(sides, auto_engage)
         self._settle_looks = settle_looks
+        self._hand_over_looks = hand_over_looks if len(operators) > 1 else 0
         self._asks: list[Ask] = []
         self._alive = [False] * len(operators)
         self._estop_reason = latched
@@ -118,8 +123,15 @@ class PlatformSupervisor:
         self._alive = alive
         for side in self.sides.values():
             self._step_lease(side, [ask for ask in asks if ask.side == side.name])
+        signs = {name: self._with_hand_over(self.sides[name], seen) for name, seen in signs.items()}
         asks += self._automatic(signs)
         return self._step(signs, [ask for ask in asks if ask.act not in LEASE_ACTS], estop=estop, reset=reset)
+
+    def _with_hand_over(self, side: Side, signs: SideSigns) -> SideSigns:
+        if side.changes_hands == 0:
+            return signs
+        side.changes_hands -= 1
+        return signs._replace(misaligned=f"the console of {self.name_of(side.holder)} takes over: wait a moment")
 
     def _automatic(self, signs: dict[str, SideSigns]) -> list[Ask]:
         asks = []
@@ -141,6 +153,8 @@ class PlatformSupervisor:
         before = side.holder
         out = side.lease.step(signs, dt=1.0)
         side.holder, side.offered_to = out.holder, out.offered_to
+        if before != out.holder:
+            side.changes_hands = self._hand_over_looks if out.holder else 0
         if before and before != out.holder:
             silent = not self._alive[before - 1]
             said = "is silent" if silent else "released the arm" if not out.holder else "handed the arm over"
@@ -148,6 +162,7 @@ class PlatformSupervisor:
         for ask in asks:
             if ask.act in LEASE_ACTS:
                 done = mine[ask.operator] is ask and not out.refused[ask.operator - 1]
+                done = done and (ask.act != "release" or before == ask.operator)
                 ask.answer(done, self._lease_answer(side, ask, done))
 
     def _lease_answer(self, side: Side, ask: Ask, done: bool) -> str:

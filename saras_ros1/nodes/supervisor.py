@@ -16,6 +16,7 @@ from std_msgs.msg import Bool, String
 from saras import ConfigError
 from saras.safety import MAX_OPERATORS, SafetyState
 from saras_ros1.channel import SIDES
+from saras_ros1.console_switch import PAUSE_S
 from saras_ros1.estop_latch import EstopLatch
 from saras_ros1.msg import SideFault
 from saras_ros1.node import SOCKET_TIMEOUT_S, Node, run
@@ -26,6 +27,8 @@ from saras_ros1.supervised_side import SupervisedSide
 from saras_ros1.system_commands import SystemCommands
 
 ANSWER_TIMEOUT_S = 2.0
+#: From a new holder to the first data of his console: ConsoleSwitch's pause, and the way of messages on a busy machine.
+HAND_OVER_S = PAUSE_S + 0.35
 
 
 class SideLimits:
@@ -68,6 +71,7 @@ class Supervisor(Node):
             tuple(operators),
             auto_engage=auto_engage,
             settle_looks=round(settle_s / self.period_s),
+            hand_over_looks=round(HAND_OVER_S / self.period_s),
             latched=self.latch.read(),
         )
         rospy.Subscriber("/system/heartbeats", String, self._on_heartbeat, queue_size=100, tcp_nodelay=True)

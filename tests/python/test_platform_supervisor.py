@@ -253,6 +253,28 @@ def test_handing_over_takes_an_offer_an_acceptance_and_a_new_engagement():
     assert platform.ask("engage", "colleague")[0] and platform.left.engagement == 2
 
 
+def test_a_new_holder_engages_when_his_console_has_taken_over():
+    platform = ready(TWO, hand_over_looks=3)
+    platform.ask("claim", "assistant")
+    done, said = platform.ask("engage", "assistant")
+    assert not done and "the console of assistant takes over" in said
+    platform.look()
+    assert platform.ask("engage", "assistant")[0]
+    platform.ask("offer", "assistant", "colleague")
+    assert platform.ask("accept", "colleague")[0]
+    assert not platform.ask("engage", "colleague")[0] and platform.state == State.HOLD
+    platform.look()
+    assert platform.ask("engage", "colleague")[0]
+
+
+def test_nobody_releases_what_another_one_holds():
+    platform = ready(TWO)
+    assert not platform.ask("release", "assistant")[0], "nobody holds it"
+    platform.ask("claim", "assistant")
+    assert platform.ask("release", "colleague") == (False, "left: release refused: held by assistant")
+    assert platform.ask("release", "assistant")[0] and platform.left.holder == 0
+
+
 def test_a_silent_holder_leaves_the_arm_to_nobody():
     platform = ready(TWO)
     platform.ask("claim", "assistant")
