@@ -131,7 +131,7 @@ class NetworkFaults(FaultCase):
             for side in SIDES:
                 self.ask(side, "hold")
                 self.watch.await_state(side, "HOLD")
-            traded, in_flight, residual = wait_until(self.settled_ledgers, lambda: f"ledgers: {self.ledgers()}")
+            traded, in_flight, residual = wait_until(self.settled_ledgers, lambda: f"ledgers: {self.ledgers()}", 120.0)
             self.assertGreater(traded, 0.05, "nothing was traded")
             row.saw(
                 f"{traded:.3f} J traded by the four tanks, {in_flight:.1e} J in flight at rest, "

@@ -10,13 +10,15 @@ import time
 from typing import ClassVar
 
 import rostest
-from support.case import FaultCase
+from support.case import FaultCase, OnHold
+from support.options import HOSTING
 from support.platform import SIDES
 from support.waiting import wait_until
 
 #: node: sides that must hold without it. {s}: the side in its name.
 HOLDS = {
     "supervisor": SIDES,
+    "realtime_host": SIDES,
     "touchball_receiver": SIDES,
     "transparency": SIDES,
     "tank_master": SIDES,
@@ -27,6 +29,8 @@ HOLDS = {
     "arm_state": ("{s}",),
     "sim_arm": ("{s}",),
 }
+#: how many of the nodes these are, by hosting
+HOLD_NODES = {"separate": 15, "realtime": 8}
 #: node: what its death does instead of a HOLD
 ELSE = {
     "colliding_regions": "distances unknown: motion goes on, no faster than 20 mm/s",
@@ -111,12 +115,16 @@ class ProcessFaults(FaultCase):
     def test_1_nodes_that_motion_needs(self):
         nodes = sorted(self.platform.expected | {f"/sim_arm_{side}" for side in SIDES})
         needed = [node for node in nodes if holds(node)]
-        self.assertEqual(len(needed), 15, needed)
+        self.assertEqual(len(needed), HOLD_NODES[HOSTING], needed)
         # The supervisor first: its first engagement after a restart has the same number as the first one before.
         needed.sort(key=lambda node: node != "/supervisor")
         for node in needed:
             with self.subTest(node):
                 try:
+                    self.kill_and_recover(node, holds(node), signal.SIGKILL)
+                except OnHold as error:  # by this node or by a busy machine: the second try tells
+                    self.revive()
+                    print(f"{node}: again, for {error}")
                     self.kill_and_recover(node, holds(node), signal.SIGKILL)
                 except AssertionError:
                     self.revive()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -157,10 +157,13 @@ class ArmLog:
             lambda: f"{count} commands at {self.path.stem} ({what}); there were {len(self.commands) - begin}",
         )
 
-    def await_motion(self, least_m: float, what: str) -> None:
-        """Until commands have gone so far from where they are now."""
+    def await_motion(self, least_m: float, what: str, or_until: Callable[[], bool] = lambda: False) -> None:
+        """Until commands have gone so far from where they are now, or until something else."""
         mark = self.mark()
-        wait_until(lambda: self.path_m(mark) > least_m, lambda: f"{what}: {self.path.stem} moves by {least_m * 1e3} mm")
+        wait_until(
+            lambda: self.path_m(mark) > least_m or or_until(),
+            lambda: f"{what}: {self.path.stem} moves by {least_m * 1e3} mm",
+        )
 
     def await_still(self, ticks: int = 30, within_m: float = 1e-6) -> None:
         """Until the servo's target has stood still for so many of the arm's ticks."""

@@ -26,6 +26,10 @@ from .watch import Watch
 MICROMETRE = 1e-6
 
 
+class OnHold(AssertionError):
+    """A side that should go on was stopped. Two busy processors do that too, by a watchdog of milliseconds."""
+
+
 class FaultCase(unittest.TestCase):
     """Class attributes say what is started; tests run in the order of their names and leave both sides engaged."""
 
@@ -166,6 +170,7 @@ class FaultCase(unittest.TestCase):
             )
 
     def goes_on(self, side: str, what: str) -> None:
-        """Engaged, not re-engaged, and moving."""
-        self.logs[side].await_motion(1e-3, what)
-        self.assertEqual(self.watch.state(side), "ENGAGED", self.watch.reason(side))
+        """Engaged, not re-engaged, and moving. OnHold when it was stopped too."""
+        self.logs[side].await_motion(1e-3, what, or_until=lambda: self.watch.state(side) != "ENGAGED")
+        if self.watch.state(side) != "ENGAGED":
+            raise OnHold(f"{what}: {side} is on {self.watch.state(side)} too: {self.watch.reason(side)}")
