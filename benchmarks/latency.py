@@ -1,7 +1,7 @@
 """The group latency: the real-time host on loopback at 1 kHz, at rest, under load, with and without its recorder.
 
 force_sent: from a datagram's arrival in the kernel to the sending of the force; set_point_handed: to the set-points in
-their mailbox; round_trip: as the console sees it. No times of the separate graph here: they have other stations.
+their mailbox; round_trip: as the console sees it. Then the same among processes, beside peers: latency_graph.py.
 """
 
 import contextlib
@@ -10,6 +10,8 @@ import os
 import shutil
 import subprocess
 import sys
+
+import latency_graph
 
 SECONDS = 10.0
 RATE_HZ = 1000.0
@@ -63,7 +65,39 @@ def run(program, soak_s=0.0):
         for name in SHOWN:
             rows.append(row(name + suffix, answer[name], facts))
     rows.insert(0, row("pipeline_step_4_tools_100_regions", steps, {}))
+    if program.with_name("saras_ros_meter").exists():
+        rows += among_processes(program.parent)
+    else:
+        print("latency: no peers, they need roscpp: script/bootstrap installs it", file=sys.stderr)
     return rows
+
+
+def among_processes(programs):
+    """Rows of the realtime host as launched, each beside the separate graph and the chain of roscpp nodes."""
+    found = latency_graph.measure_all(programs)
+    rows = []
+    for phase in latency_graph.PHASES:
+        ours = found["realtime"].get(phase)
+        if ours is None:
+            continue
+        separate = found["separate"].get(phase, {})
+        chain = found["chain"].get(phase, {})
+        beside = {
+            # Of the separate graph without the way back to the console: in its favour.
+            "round_trip": {"separate_force": separate.get("force"), "roscpp_chain": chain.get("round_trip")},
+            "set_point": {"separate": separate.get("set_point")},
+        }
+        for station, peers in beside.items():
+            rows.append(row_beside(f"launched_{station}_{phase}", ours[station], peers))
+    return rows
+
+
+def row_beside(name, times, peers):
+    """A row with the peers' times and ratios; a peer without a message has none."""
+    row_ = row(name, times, {})
+    row_["peers"] = {peer: row("", theirs, {})["ours"] for peer, theirs in peers.items() if theirs and theirs["count"]}
+    row_["ratio"] = {peer: round(theirs["p50"] / times["p50"], 2) for peer, theirs in row_["peers"].items()}
+    return row_
 
 
 def row(name, times, facts):

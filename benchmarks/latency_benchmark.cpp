@@ -2,12 +2,10 @@
 //
 // A console of its own thread sends at a rate and receives; the host runs as it does under ROS, with both arms' samples
 // at 100 Hz, two other tools and 100 regions.   latency_benchmark SECONDS RATE_HZ datagram|tick RECORD_S
-#include <arpa/inet.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 #include <atomic>
-#include <cmath>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -16,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "saras/runtime/clock.hpp"
+#include "loopback_console.hpp"
 #include "saras/runtime/teleop_host.hpp"
 
 namespace saras::benchmarks {
@@ -54,32 +52,12 @@ SceneInput scene() {
   return scene;
 }
 
-TouchballUp datagram(std::uint64_t seq, std::int64_t now_ns) {
-  TouchballUp packet;
-  packet.session = 1;
-  packet.seq = seq;
-  packet.sender_time_ns = now_ns;
-  const double t = 1e-9 * static_cast<double>(now_ns);
-  for (TouchballUpSide* side : {&packet.left, &packet.right}) {
-    side->present = side->calibrated = true;
-    side->simball_T_handle.translation = {0.01 * std::cos(2 * t), 0.01 * std::sin(2 * t), -0.2};
-  }
-  return packet;
-}
-
 long resident_bytes() {
   std::ifstream file("/proc/self/statm");
   long total = 0;
   long resident = 0;
   file >> total >> resident;
   return resident * sysconf(_SC_PAGESIZE);
-}
-
-void print(const char* name, const HistogramSnapshot& h) {
-  std::printf("\"%s\": {\"count\": %llu, \"p50\": %lld, \"p99\": %lld, \"p99.9\": %lld, \"max\": %lld}, ", name,
-              static_cast<unsigned long long>(h.count), static_cast<long long>(h.quantile_ns(0.5)),
-              static_cast<long long>(h.quantile_ns(0.99)), static_cast<long long>(h.quantile_ns(0.999)),
-              static_cast<long long>(h.max_ns));
 }
 
 /// One step of the pipeline alone, both arms, 4 tools, 100 regions.
@@ -90,7 +68,7 @@ HistogramSnapshot time_steps(int steps) {
   input.scene.age_s = 0.0;
   Histogram times;
   for (int k = 0; k < steps; ++k) {
-    const TouchballUp up = datagram(static_cast<std::uint64_t>(k) + 1, k * 1'000'000LL);
+    const TouchballUp up = moving_hands(1, static_cast<std::uint64_t>(k) + 1, k * 1'000'000LL);
     for (SideInput& side : input.sides) {
       side.handle.is_new = true;
       side.handle.age_s = side.arm.age_s = side.arm.wrench_age_s = side.channel.age_s = 0.0;
@@ -110,26 +88,6 @@ HistogramSnapshot time_steps(int steps) {
   return times.snapshot();
 }
 
-sockaddr_in loopback(int port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  return address;
-}
-
-int bound_socket(int& port) {
-  const int descriptor = socket(AF_INET, SOCK_DGRAM, 0);
-  sockaddr_in own = loopback(0);
-  bind(descriptor, reinterpret_cast<sockaddr*>(&own), sizeof(own));
-  socklen_t size = sizeof(own);
-  getsockname(descriptor, reinterpret_cast<sockaddr*>(&own), &size);
-  port = ntohs(own.sin_port);
-  const timeval patience{0, 100'000};
-  setsockopt(descriptor, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof(patience));
-  return descriptor;
-}
-
 void feed_arms(TeleopHost& host, const std::atomic<bool>& running) {
   while (running) {
     for (int side = 0; side < kSides; ++side) {
@@ -146,7 +104,7 @@ void feed_arms(TeleopHost& host, const std::atomic<bool>& running) {
 int run(double seconds, double rate_hz, Pacing pacing, double record_s) {
   const HistogramSnapshot step = time_steps(100'000);
   int port = 0;
-  const int console = bound_socket(port);
+  const int descriptor = bound_socket(port);
   HostConfig config;
   config.loop.pacing = pacing;
   config.console.bind_port = 0;
@@ -158,54 +116,40 @@ int run(double seconds, double rate_hz, Pacing pacing, double record_s) {
   host.start();
   std::thread arms([&] { feed_arms(host, running); });
 
-  // From the sending of a datagram to the first answer that echoes it, as a console sees it.
-  Histogram round_trip;
-  std::thread receiver([&] {
-    std::array<std::uint8_t, 2048> data;
-    TouchballDown down;
-    std::uint64_t echoed = 0;
-    while (running) {
-      const ssize_t size = recv(console, data.data(), data.size(), 0);
-      const std::int64_t now_ns = monotonic_ns();
-      if (size > 0 && !decode(data.data(), static_cast<std::size_t>(size), down) && down.echo_seq > echoed) {
-        echoed = down.echo_seq;
-        round_trip.record(now_ns - down.echo_time_ns);
-      }
-    }
-  });
-  const sockaddr_in to = loopback(host.console().port());
-  const auto period_ns = static_cast<std::int64_t>(1e9 / rate_hz);
-  std::int64_t due_ns = monotonic_ns();
-  const std::int64_t end_ns = due_ns + static_cast<std::int64_t>(1e9 * seconds);
+  HistogramSnapshot round_trip;
   long resident_first = 0;
-  for (std::uint64_t seq = 1; due_ns < end_ns; ++seq, due_ns += period_ns) {
-    sleep_until_ns(due_ns);
-    const TouchballUpBytes bytes = encode(datagram(seq, monotonic_ns()));
-    sendto(console, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof(to));
-    if (resident_first == 0 && due_ns > end_ns - static_cast<std::int64_t>(0.9e9 * seconds)) {
-      resident_first = resident_bytes();  // after a tenth of the time: all that is ever touched was touched
-    }
+  {
+    LoopbackConsole console(descriptor, host.console().port(), rate_hz);
+    std::this_thread::sleep_for(std::chrono::duration<double>(0.1 * seconds));
+    resident_first = resident_bytes();  // by now all that is ever touched was touched
+    std::this_thread::sleep_for(std::chrono::duration<double>(0.9 * seconds));
+    round_trip = console.round_trip.end_phase();
   }
   const long resident_last = resident_bytes();
   running = false;
   arms.join();
-  receiver.join();
   host.stop();
   const HostStatistics statistics = host.statistics();
   std::printf("{");
-  print("pipeline_step", step);
-  print("round_trip", round_trip.snapshot());
-  print("force_sent", statistics.reply);
-  print("set_point_handed", statistics.handed);
-  print("lateness", statistics.loop.lateness);
-  print("execution", statistics.loop.execution);
+  print_json("pipeline_step", step);
+  std::printf(", ");
+  print_json("round_trip", round_trip);
+  std::printf(", ");
+  print_json("force_sent", statistics.reply);
+  std::printf(", ");
+  print_json("set_point_handed", statistics.handed);
+  std::printf(", ");
+  print_json("lateness", statistics.loop.lateness);
+  std::printf(", ");
+  print_json("execution", statistics.loop.execution);
+  std::printf(", ");
   std::printf(
       "\"steps\": %llu, \"overruns\": %llu, \"holds\": %llu, \"left_out\": %llu, \"resident_growth_bytes\": %ld, ",
       static_cast<unsigned long long>(statistics.steps), static_cast<unsigned long long>(statistics.loop.overruns),
       static_cast<unsigned long long>(statistics.loop.holds), static_cast<unsigned long long>(statistics.left_out),
       resident_last - resident_first);
   std::printf("\"realtime\": \"%s\"}\n", host.loop().report().text().c_str());
-  close(console);
+  close(descriptor);
   return 0;
 }
 

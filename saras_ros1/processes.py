@@ -41,6 +41,11 @@ class Child:
             )  # fmt: skip
 
     @property
+    def pid(self) -> int:
+        """Of the program itself; what it started: descendants()."""
+        return self._process.pid
+
+    @property
     def exit_code(self) -> int | None:
         """None while it runs."""
         return self._process.poll()
