@@ -9,7 +9,6 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import rospy
@@ -55,9 +54,7 @@ class Settings:
     operator: str
     publishing: Publishing
     frames_wait_s: float
-    collision_timeout_s: float
     wants_nearness: bool
-    unknown_speed_scale: float
 
 
 def _section(name: str) -> Params:
@@ -69,9 +66,9 @@ def read(own: Params) -> Settings:
     session = time.time_ns()
     pipeline = PipelineConfig(session=session, channel_timeout_s=STATE_TIMEOUT_S)
     frames_wait_s = _read_mappings(pipeline)
-    collision = _read_transparency(pipeline)
+    _read_transparency(pipeline)
     publishing = _read_tanks(pipeline)
-    slowdown = _read_integrators(pipeline, publishing)
+    _read_integrators(pipeline, publishing)
     console, keys, operator = _read_console(pipeline, publishing, session)
     host = HostConfig(
         loop=LoopConfig(
@@ -84,16 +81,13 @@ def read(own: Params) -> Settings:
         pipeline=pipeline,
         record_s=own.number("record_s", 0.0, 3600.0),
     )
-    scale = slowdown["unknown_speed_m_s"] / pipeline.left_integrator.speed_limit_m_s
     return Settings(
         host=host,
         keys=keys,
         operator=operator,
         publishing=publishing,
         frames_wait_s=frames_wait_s,
-        collision_timeout_s=min(collision["timeout_s"], slowdown["timeout_s"]),
         wants_nearness=pipeline.proximity_force or pipeline.proximity_slowdown,
-        unknown_speed_scale=scale,
     )
 
 
@@ -115,7 +109,7 @@ def _read_mappings(pipeline: PipelineConfig) -> float:
     return frames_wait_s
 
 
-def _read_transparency(pipeline: PipelineConfig) -> dict[str, Any]:
+def _read_transparency(pipeline: PipelineConfig) -> None:
     params = _section("transparency")
     params.number("period_s", 0.001, 0.1)
     pipeline.handle_timeout_s = min(pipeline.handle_timeout_s, params.number("master_timeout_s", 0.005, 1.0))
@@ -123,11 +117,10 @@ def _read_transparency(pipeline: PipelineConfig) -> dict[str, Any]:
     pipeline.transparency = params.build(TransparencyConfig, "law")
     pipeline.slave_twist = params.build(TwistEstimatorConfig, "slave_twist")
     proximity = params.section("proximity_force")
-    timeout_s = proximity.number("timeout_s", 0.02, 0.15)
+    proximity.number("timeout_s", 0.02, 0.15)
     pipeline.proximity_force = proximity.flag("enabled")
     pipeline.repulsion = proximity.build(RepulsiveForceConfig, "law")
     params.finish()
-    return {"timeout_s": timeout_s}
 
 
 def _read_tanks(pipeline: PipelineConfig) -> Publishing:
@@ -148,8 +141,8 @@ def _read_tanks(pipeline: PipelineConfig) -> Publishing:
     return Publishing(1, 1, exchange, state, 1)
 
 
-def _read_integrators(pipeline: PipelineConfig, publishing: Publishing) -> dict[str, Any]:
-    found: dict[str, Any] = {}
+def _read_integrators(pipeline: PipelineConfig, publishing: Publishing) -> None:
+    nearness_timeout_s = float("inf")
     for side in SIDES:
         params = _section(f"velocity_integrator_{side}")
         params.text("side", (side,))
@@ -160,18 +153,13 @@ def _read_integrators(pipeline: PipelineConfig, publishing: Publishing) -> dict[
         publishing.tf_every = params.integer("tf_every", 1, 1000)
         config = params.build(VelocityIntegratorConfig, "law")
         slowdown = params.section("proximity_slowdown")
-        timeout_s = slowdown.number("timeout_s", 0.02, 0.15)
+        nearness_timeout_s = min(nearness_timeout_s, slowdown.number("timeout_s", 0.02, 0.15))
         unknown_speed_m_s = slowdown.number("unknown_speed_m_s", 0.0, config.speed_limit_m_s)
-        found = {
-            "timeout_s": min(timeout_s, found.get("timeout_s", timeout_s)),
-            "unknown_speed_m_s": min(unknown_speed_m_s, found.get("unknown_speed_m_s", unknown_speed_m_s)),
-        }
         pipeline.proximity_slowdown = slowdown.flag("enabled") or pipeline.proximity_slowdown
         params.finish()
         setattr(pipeline, f"{side}_integrator", config)
         setattr(pipeline, f"{side}_unknown_speed_m_s", unknown_speed_m_s)
-    pipeline.nearness_timeout_s = found["timeout_s"]
-    return found
+    pipeline.nearness_timeout_s = nearness_timeout_s
 
 
 def _read_console(

@@ -20,7 +20,6 @@ from std_msgs.msg import String
 from std_srvs.srv import Trigger, TriggerResponse
 
 from saras import Error
-from saras.pipeline import NearnessInput
 from saras.runtime import TeleopHost
 from saras_ros1 import convert, realtime_config
 from saras_ros1.channel import SIDES, Channel, base_frame
@@ -28,8 +27,9 @@ from saras_ros1.inputs import HEARTBEAT_S, Input
 from saras_ros1.msg import ChannelState, SideFault
 from saras_ros1.node import Node, run
 from saras_ros1.nodes.touchball_receiver import HEARD_S
-from saras_ros1.proximity import Proximity
+from saras_ros1.params import Params
 from saras_ros1.realtime_outputs import Topics
+from saras_ros1.realtime_scene import SECTION, RealtimeScene
 from saras_ros1.realtime_trust import Handshakes, merged
 from saras_ros1.static_frames import StaticFrames
 
@@ -52,6 +52,7 @@ class RealtimeHost(Node):
         self.params.finish()
         home = Path(os.environ.get("ROS_HOME", "~/.ros")).expanduser()
         self.record_directory = Path(directory).expanduser() if directory else home / "flight"
+        self.scene = self._read_scene(settings)
         self._wait_for_frames(settings.host.pipeline)
 
         self.host = TeleopHost(settings.host)
@@ -67,9 +68,6 @@ class RealtimeHost(Node):
         self._records = 0
         for side in SIDES:
             self._subscribe(side)
-        if settings.wants_nearness:
-            self.proximity = Proximity(self, SIDES, settings.collision_timeout_s, settings.unknown_speed_scale)
-            self.proximity.input.listeners.append(self._on_collision)
         rospy.Service("~write_record", Trigger, self._on_write_record)
         rospy.on_shutdown(self.host.stop)
         self.host.start()
@@ -77,6 +75,16 @@ class RealtimeHost(Node):
         self._at_last_report = self.host.statistics()
         threading.Thread(target=self._publish, daemon=True).start()
         self.every(HEARTBEAT_S, self._beat_all)
+        if self.scene is not None:
+            self.every(self.scene.period_s, partial(self.scene.update, self.host))
+
+    def _read_scene(self, settings: realtime_config.Settings) -> RealtimeScene | None:
+        """The loop takes the distances itself when somebody acts on them."""
+        if not settings.wants_nearness:
+            return None
+        scene = RealtimeScene(self, Params(rospy.get_param(SECTION, {}), SECTION))
+        settings.host.pipeline.distances = scene.config()
+        return scene
 
     def _wait_for_frames(self, pipeline) -> None:
         """Static frames of both consoles; nothing is late before there is a loop."""
@@ -118,19 +126,6 @@ class RealtimeHost(Node):
         before, self._state[side] = self._state.get(side), word.state
         if before == ChannelState.ENGAGED and word.state == ChannelState.HOLD and word.reason not in ASKED:
             self._record_later(f"{side}: {word.reason}")
-
-    def _on_collision(self, _: Input) -> None:
-        for side in SIDES:
-            near = self.proximity.of(side)
-            self.host.set_nearness(
-                side,
-                NearnessInput(
-                    max_speed_scale=near.max_speed_scale,
-                    approach_direction=near.approach_direction,
-                    approach_speed_limit_m_s=near.approach_speed_limit_m_s,
-                    distance_m=near.distance_m,
-                ),
-            )
 
     def _publish(self) -> None:
         """A thread of its own: the newest step, as soon as it is there and the last one is old enough."""
@@ -217,6 +212,7 @@ class RealtimeHost(Node):
             "reply_p99_us": round(1e-3 * now.reply.quantile_ns(0.99), 1),
             "realtime": self.host.report.text(),
             "records": self._records,
+            **({} if self.scene is None else {"distances": "; ".join(self.scene.reasons) or "all known"}),
         }
 
 

@@ -2,6 +2,7 @@
 """The whole platform in one go. Test methods run in alphabetical order and build on each other."""
 
 import os
+import re
 import signal
 import unittest
 import xmlrpc.client
@@ -17,6 +18,7 @@ from saras_ros1.msg import ArmTruth, ChannelState, CollisionState, TankState
 from std_srvs.srv import Trigger
 from support import Newest, wait_until
 
+from saras.runtime import read_flight
 from saras_ros1 import convert
 
 SIDES = ("left", "right")
@@ -100,6 +102,22 @@ class PlatformTest(unittest.TestCase):
         wait_until(known, lambda: self.distances.message)
         for name in ("PSM1_tool_tip", "PSM2_tool_tip", "ECM_tool_tip"):
             wait_until(lambda name=name: self.buffer.can_transform("world", name, rospy.Time(0)), f"world ← {name}")
+
+    def test_3c_the_loop_knows_the_same_distances(self):
+        if self.hosting != "realtime":
+            return
+        write = rospy.ServiceProxy("/realtime_host/write_record", Trigger)
+        seen = len(self.distances.all)
+        answer = write()
+        self.assertTrue(answer.success, answer.message)
+        record = read_flight(re.search(r"\S+\.flight", answer.message)[0])
+        last = record.ticks(record.chunks - 1)[-1].output
+        nearby = self.distances.all[max(0, seen - 20) : len(self.distances.all) + 20]
+        for side in SIDES:
+            loop_m = getattr(last, side).nearness.distance_m
+            theirs = [tool.known_distance for m in nearby for tool in m.tools if tool.name == f"mesa_{side}"]
+            # The tools move at some cm/s, and the record's last step is between two messages.
+            self.assertLess(min(abs(loop_m - each) for each in theirs), 3e-3, (side, loop_m, theirs))
 
     def test_4_a_killed_arm_holds_its_side_alone(self):
         kill("/arm_state_right")
