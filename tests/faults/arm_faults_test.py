@@ -8,7 +8,7 @@ import time
 import numpy as np
 import rostest
 from support.case import FaultCase
-from support.options import LIMIT_S
+from support.options import LIMIT_S, process_of
 from support.platform import SIDES
 from support.tcp_gate import TcpGate
 from support.waiting import wait_until
@@ -146,7 +146,8 @@ class ArmFaults(FaultCase):
             self.back(row)
 
     def test_36_stalls(self):
-        for node in ("/velocity_integrator_left", "/tank_slave", "/tf_transformer_left", "/arm_driver_left"):
+        stalled = ("/velocity_integrator_left", "/tank_slave", "/tf_transformer_left", "/arm_driver_left")
+        for node in dict.fromkeys(process_of(node) for node in stalled):
             self.engage_and_move()
             limit = LIMIT_S["node_limit_s"]
             with self.row(
@@ -160,7 +161,7 @@ class ArmFaults(FaultCase):
                     time.sleep(STALL_S)
                 finally:
                     self.platform.thaw(pid)
-                self.await_hold(row, "left", f"heartbeat of {node[1:]}")
+                self.await_hold(row, "left", f"heartbeat of {'' if node == '/realtime_host' else node[1:]}")
                 points = [tick.target for tick in log.read().ticks if tick.t_s > begin + 0.5 * STALL_S]
                 moved = max(np.ptp(np.array(points), axis=0)) if points else 0.0
                 self.assertLess(moved, 2e-3, "the arm made good what it had missed")
@@ -168,7 +169,7 @@ class ArmFaults(FaultCase):
                 self.back(row)
 
     def test_37_restart_away_from_the_start(self):
-        node = "/velocity_integrator_left"
+        node = process_of("/velocity_integrator_left")
         self.engage_and_move()
         with self.row(37, f"kill -9 of {node[1:]} in motion; it is started again; engaged again") as row:
             log = self.logs["left"]
@@ -192,12 +193,12 @@ class ArmFaults(FaultCase):
         faults = {
             "console killed": lambda: self.console.kill(signal.SIGKILL),
             "arm link cut": lambda: self.gate.cut(shut=True),
-            "node killed": lambda: self.platform.kill("/tank_slave"),
+            "node killed": lambda: self.platform.kill(process_of("/tank_slave")),
         }
         mends = {
             "console killed": self.console.start,
             "arm link cut": self.gate.open,
-            "node killed": lambda: self.platform.restart("/tank_slave"),
+            "node killed": lambda: self.platform.restart(process_of("/tank_slave")),
         }
         for order in ("before", "after"):
             for name, strike in faults.items():

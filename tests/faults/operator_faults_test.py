@@ -3,12 +3,14 @@
 
 import signal
 import sys
+import unittest
 
 import rospy
 import rostest
 from saras_ros1.srv import OperatorAct
 from support.case import FaultCase
 from support.console import Console
+from support.options import HOSTING
 from support.platform import SIDES
 from support.waiting import wait_until
 
@@ -18,6 +20,12 @@ FIRST, SECOND = "assistant", "colleague"
 
 
 class OperatorFaults(FaultCase):
+    @classmethod
+    def setUpClass(cls):
+        if HOSTING == "realtime":
+            raise unittest.SkipTest("the real-time host serves one console")
+        super().setUpClass()
+
     @classmethod
     def prepare(cls, platform):
         _, (cls.second_bind, cls.second_listen) = free_ports(udp=2)

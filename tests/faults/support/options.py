@@ -29,3 +29,18 @@ def _argument(name: str, default: str) -> str:
 HOSTING = _argument("hosting", "separate")
 LIMITS = _argument("limits", "wide")
 LIMIT_S = {name.split("/")[-1]: value for name, value in (WIDE if LIMITS == "wide" else SHIPPED).items()}
+
+_IN_THE_LOOP = (
+    "touchball_receiver",
+    "tf_transformer",
+    "transparency",
+    "tank_master",
+    "tank_slave",
+    "velocity_integrator",
+)
+
+
+def process_of(node: str) -> str:
+    """The process that does this node's work: the node itself, or the real-time host in whose loop it is."""
+    inside = HOSTING == "realtime" and node.strip("/").startswith(_IN_THE_LOOP)
+    return "/realtime_host" if inside else node

@@ -14,6 +14,7 @@ from std_msgs.msg import String
 
 from saras_ros1.stamped import lean_class
 
+from .options import process_of
 from .platform import SIDES
 from .waiting import wait_until
 
@@ -107,7 +108,9 @@ class Watch:
     def counts(self) -> dict[str, int]:
         """What touchball_receiver counts, as it says next."""
         return {
-            key: int(value) for key, value in self.report("/touchball_receiver").items() if value.lstrip("-").isdigit()
+            key: int(value)
+            for key, value in self.report(process_of("/touchball_receiver")).items()
+            if value.lstrip("-").isdigit()
         }
 
     def await_count(self, name: str, least: int) -> dict[str, int]:
