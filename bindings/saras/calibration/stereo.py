@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from saras import CalibrationError
 from saras.calibration.camera import Intrinsics, sharpness
+from saras.calibration.camera_info import Eye
 
 Array = npt.NDArray[np.float64]
 Image = npt.NDArray[np.uint8]
@@ -140,26 +141,14 @@ class Stereo:
 
     def save(self, folder: str | Path, force: bool = False) -> tuple[Path, Path]:
         """Writes left.yaml and right.yaml as camera_info_manager and camera_calibration_parsers read them."""
-        import yaml
-
         paths = Path(folder) / "left.yaml", Path(folder) / "right.yaml"
         for path in paths:
             if path.exists() and not force:
                 raise CalibrationError(f"{path}: exists; ask for it (force) to write over it")
         Path(folder).mkdir(parents=True, exist_ok=True)
         eyes = (self.left, self.left_R, self.left_P), (self.right, self.right_R, self.right_P)
-        for path, (eye, rectification, projection) in zip(paths, eyes):
-            document = {
-                "image_width": eye.width,
-                "image_height": eye.height,
-                "camera_name": f"endoscope_{path.stem}",
-                "camera_matrix": _matrix(eye.matrix),
-                "distortion_model": "plumb_bob",
-                "distortion_coefficients": _matrix(eye.distortion[None]),
-                "rectification_matrix": _matrix(rectification),
-                "projection_matrix": _matrix(projection),
-            }
-            path.write_text(yaml.safe_dump(document, sort_keys=False, default_flow_style=None), encoding="utf-8")
+        for path, eye in zip(paths, eyes):
+            Eye(*eye, f"endoscope_{path.stem}").save(path)
         return paths
 
 
@@ -272,11 +261,6 @@ def _reprojection(
 def _coverage(pixels: Sequence[npt.NDArray[np.float32]], width: int, height: int) -> float:
     cells = np.floor(GRID * np.concatenate(pixels) / [width, height]).astype(int)
     return len({tuple(cell) for cell in np.clip(cells, 0, GRID - 1)}) / GRID**2
-
-
-def _matrix(matrix: Array) -> dict[str, Any]:
-    rows, columns = matrix.shape
-    return {"rows": rows, "cols": columns, "data": [float(f"{value:.12g}") for value in matrix.ravel()]}
 
 
 __all__ = ["LEAST_VIEWS", "Charuco", "Checkerboard", "Stereo", "stereo"]
