@@ -6,6 +6,7 @@ from typing import Any
 
 import rospy
 from geometry_msgs.msg import PoseStamped, TwistStamped, WrenchStamped
+from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
 from saras.runtime import HostSnapshot
@@ -14,6 +15,7 @@ from saras_ros1.channel import SIDES, base_frame
 from saras_ros1.handle_outputs import HandleOutputs
 from saras_ros1.msg import TankExchange, TankState
 from saras_ros1.node import Node
+from saras_ros1.quiet_faults import TankFaults
 from saras_ros1.realtime_config import Publishing
 
 
@@ -73,10 +75,13 @@ class TankTopics:
         self._exchange_every, self._state_every = every.exchange_every[name], every.tank_state_every[name]
         self._state = node.output(f"/{name}/state", TankState)
         self._exchange = node.output(f"/{name}/exchange", TankExchange)
+        self._events, self._faults = node.output("/system/events", String), TankFaults(name)
         self._seq = 0
 
     def publish(self, out: Any, count: int, stamp_ns: int) -> None:
         """out: TankOutput."""
+        if text := self._faults.update(out.reduction, out.energy_J):
+            self._events.publish(String(text))
         if count % self._exchange_every == 0:
             self._exchange.publish(tank_messages.exchange(*out.to_peer, wishes=out, stamp_ns=stamp_ns))
         if count % self._state_every:

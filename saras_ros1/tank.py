@@ -6,12 +6,14 @@ import time
 from typing import Any
 
 import numpy as np
+from std_msgs.msg import String
 
 from saras.teleop import EnergyTank, EnergyTankConfig, LedgerReceiver, LedgerSender
 from saras_ros1 import tank_messages
 from saras_ros1.inputs import Input
 from saras_ros1.msg import TankExchange, TankState
 from saras_ros1.node import Node, Tick
+from saras_ros1.quiet_faults import TankFaults
 
 
 def new_session() -> int:
@@ -75,6 +77,7 @@ class Tank:
         self.law.reset()
         self.peers: list[Peer] = []
         self._state_out = node.output(f"/{name}/state", TankState)
+        self._events, self._faults = node.output("/system/events", String), TankFaults(name)
         # Sums lose nothing when they are told less often.
         self._exchange_every = node.params.integer("exchange_every", 1, 10)
         self._state_every = node.params.integer("state_every", 1, 100)
@@ -96,6 +99,8 @@ class Tank:
             share_J = answer_J / len(asking) if peer in asking else 0.0
             share_J += out.sent_overflow_J / len(roomy) if peer in roomy else 0.0
             peer.send(share_J)
+        if text := self._faults.update(out.reduction, out.energy_J):
+            self._events.publish(String(text))
         self._ticks += 1
         if self._ticks % self._exchange_every == 0:
             for peer in self.peers:

@@ -28,6 +28,7 @@ from saras_ros1.msg import ChannelState, SideFault
 from saras_ros1.node import Node, run
 from saras_ros1.nodes.touchball_receiver import HEARD_S
 from saras_ros1.params import Params
+from saras_ros1.quiet_faults import LinkFaults
 from saras_ros1.realtime_outputs import Topics
 from saras_ros1.realtime_scene import SECTION, RealtimeScene
 from saras_ros1.realtime_trust import Handshakes, merged
@@ -75,6 +76,8 @@ class RealtimeHost(Node):
         self._at_last_report = self.host.statistics()
         threading.Thread(target=self._publish, daemon=True).start()
         self.every(HEARTBEAT_S, self._beat_all)
+        self._link_faults = LinkFaults(settings.operator)
+        self.every(1.0, self._tell_link_faults)
         if self.scene is not None:
             self.every(self.scene.period_s, partial(self.scene.update, self.host))
 
@@ -126,6 +129,10 @@ class RealtimeHost(Node):
         before, self._state[side] = self._state.get(side), word.state
         if before == ChannelState.ENGAGED and word.state == ChannelState.HOLD and word.reason not in ASKED:
             self._record_later(f"{side}: {word.reason}")
+
+    def _tell_link_faults(self) -> None:
+        if text := self._link_faults.update(merged(self.host.counts(), self.handshakes), time.monotonic()):
+            self._events.publish(String(text))
 
     def _publish(self) -> None:
         """A thread of its own: the newest step, as soon as it is there and the last one is old enough."""

@@ -25,6 +25,7 @@ from saras_ros1.inputs import HEARTBEAT_S
 from saras_ros1.msg import TankExchange
 from saras_ros1.node import Node, Tick, run
 from saras_ros1.params import Params
+from saras_ros1.quiet_faults import LinkFaults
 
 HEARD_S = 0.35  #: a console whose newest good datagram is older is not heard
 
@@ -92,9 +93,17 @@ class TouchballReceiver(Node):
             ledger = f"/tank_master/port_{side}/exchange"
             self.ledgers[side] = self.input(ledger, TankExchange, timeout_s=peer_timeout_s)
         self.loop(self.send_down, list(self.wrenches.values()), period_s=period_s)
+        self._events = self.output("/system/events", String)
+        self._faults = {operator: LinkFaults(operator) for operator in self.consoles}
+        self.every(1.0, self._tell_faults)
         for console in self.consoles.values():
             rospy.on_shutdown(console.link.close)
             threading.Thread(target=self._receive, args=(console,), daemon=True).start()
+
+    def _tell_faults(self) -> None:
+        for operator, console in self.consoles.items():
+            if text := self._faults[operator].update(console.link.counts(), time.monotonic()):
+                self._events.publish(String(text))
 
     def _receive(self, console: Console) -> None:
         say_next = 0.0

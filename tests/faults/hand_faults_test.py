@@ -262,6 +262,7 @@ class HandFaults(FaultCase):
             thread.start()
             try:
                 tank = wait_until(self.emptied, lambda: f"an empty tank; {self.watch.tanks['tank_slave']}", 90.0)
+                self.await_told(row, "tank_slave: empty")
                 reduced = wait_until(lambda: self.watch.newest["/tank_slave/left/twist"], "twist")
                 told = self.watch.report("/tank_slave") if HOSTING == "separate" else {}
             finally:

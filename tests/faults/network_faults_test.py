@@ -79,6 +79,7 @@ class NetworkFaults(FaultCase):
             for side in SIDES:
                 self.goes_on(side, "with gaps")
             self.assertEqual(self.watch.engagement("left"), number)
+            self.await_told(row, "not taken", "gaps")
             row.saw(f"{after['gaps'] - before['gaps']} missing numbers counted for {lost} lost, engaged throughout")
 
     def test_02_loss_bursts(self):
@@ -167,6 +168,7 @@ class NetworkFaults(FaultCase):
             self.goes_on("left", "with replays")
             self.unchanged(before, after, "sessions", "handshakes", "malformed")
             after = self.watch.counts()
+            self.await_told(row, "not taken", "replayed")
             row.saw(
                 f"of {sent} sent again {sum(after[n] - before[n] for n in refused)} refused by their number (the rest "
                 "lost at the full socket), none taken, the side stays engaged"
@@ -184,6 +186,7 @@ class NetworkFaults(FaultCase):
             after = self.watch.await_count("unauthenticated", before["unauthenticated"] + 450)
             self.goes_on("left", "with forgeries")
             self.unchanged(before, after, "sessions", "handshakes", "malformed", "far_ahead")
+            self.await_told(row, "not taken", "unauthenticated")
             row.saw(f"{after['unauthenticated'] - before['unauthenticated']} refused by their tag, none taken")
 
     def test_08_damaged(self):
@@ -211,6 +214,7 @@ class NetworkFaults(FaultCase):
             begun = {n: after[n] - before[n] for n in ("sessions", "handshakes")}
             self.assertEqual(begun["sessions"], begun["handshakes"], "a session that the console did not begin")
             refused = {n: after[n] - before[n] for n in ("malformed", "unauthenticated")}
+            self.await_told(row, "not taken", "malformed")
             row.saw(
                 f"{refused['malformed']} refused by their frame, {refused['unauthenticated']} by their tag, none taken"
             )

@@ -157,6 +157,14 @@ class FaultCase(unittest.TestCase):
             self.console.await_shown(side, "HOLD", "unknown")
         row.saw(f"event “{event}”, arm still")
 
+    def await_told(self, row: Row, *words: str) -> None:
+        """The event of something that needs no HOLD; it comes at once, or with the sum of ten seconds."""
+        event = wait_until(
+            lambda: next((e for e in self.watch.events[self.events_before :] if all(w in e for w in words)), ""),
+            lambda: f"an event with {words}; there were {self.watch.events[self.events_before :]}",
+        )
+        row.saw(f"event “{event}”")
+
     def await_silent(self, side: str) -> None:
         """Neither motion to the arm nor force to the hand."""
         self.logs[side].await_still()
