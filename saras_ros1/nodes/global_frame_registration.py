@@ -7,23 +7,18 @@ It publishes no transform itself: the node `frames` is asked to load what was sa
 
 from __future__ import annotations
 
-import time
-from collections import deque
-
 import numpy as np
 import rospy
-from geometry_msgs.msg import PoseStamped
-from sensor_msgs.msg import CameraInfo, Image, JointState
 from std_srvs.srv import Trigger, TriggerResponse
 
-from saras import CalibrationError, ConfigError, Error
+from saras import CalibrationError, Error
 from saras.calibration.board import Board
 from saras.calibration.calibration_file import Calibration
-from saras.calibration.camera import Intrinsics, locate_board
 from saras.calibration.registration import Arm, Registration, View
 from saras.kinematics import scene as scenes
-from saras_ros1 import convert
-from saras_ros1.camera_images import grey, intrinsics_of
+from saras_ros1 import calibration_services
+from saras_ros1.arm_readings import ArmReadings
+from saras_ros1.board_camera import BoardCamera
 from saras_ros1.node import Node, run
 from saras_ros1.srv import (
     LoadCalibration,
@@ -33,47 +28,7 @@ from saras_ros1.srv import (
     TakeMeasurementResponse,
 )
 
-STALE_S = 0.5
 ALL_ARMS = {"mesa_left", "mesa_right", "PSM1", "PSM2", "ECM"}
-
-
-class ArmReadings:
-    """What an arm says of its tip and of the joints under its base."""
-
-    def __init__(self, name: str, frame: str, pose_topic: str, joints_topic: str, joint_names: list[str]) -> None:
-        self.name, self.frame, self.joint_names = name, frame, joint_names
-        self.poses: deque[tuple[float, np.ndarray]] = deque(maxlen=2000)
-        self.joints: dict[str, float] = {}
-        self._read = convert.in_frame(frame, convert.pose)
-        rospy.Subscriber(pose_topic, PoseStamped, self._on_pose, queue_size=20, tcp_nodelay=True)
-        if joint_names:
-            rospy.Subscriber(joints_topic, JointState, self._on_joints, queue_size=1, tcp_nodelay=True)
-
-    def _on_pose(self, message: PoseStamped) -> None:
-        try:
-            self.poses.append((time.monotonic(), self._read(message)))
-        except ValueError as error:
-            rospy.logwarn_throttle(5.0, f"{self.name}: pose refused: {error}")
-
-    def _on_joints(self, message: JointState) -> None:
-        now = dict(zip(message.name, message.position))
-        if all(name in now for name in self.joint_names):
-            self.joints = {name: now[name] for name in self.joint_names}
-
-    def over(self, seconds: float) -> np.ndarray:
-        """(n, 4, 4) poses of the next so many seconds."""
-        start = time.monotonic()
-        time.sleep(seconds)
-        poses = [pose for at, pose in list(self.poses) if at >= start]
-        if len(poses) < 3:
-            raise CalibrationError(f"{self.name}: {len(poses)} poses in {seconds:g} s: must be >= 3; is the arm on?")
-        return np.array(poses)
-
-    def under_base(self) -> dict[str, float] | None:
-        """Joints under the base; None when this arm has none that are read."""
-        if self.joint_names and not self.joints:
-            raise CalibrationError(f"{self.name}: its positioning joints were not read yet")
-        return dict(self.joints) or None
 
 
 class GlobalFrameRegistration(Node):
@@ -110,22 +65,13 @@ class GlobalFrameRegistration(Node):
         self.registration = Registration(board, world_T_board, arms)
         if hand_eye_file:
             self.registration.gripper_T_camera.update(Calibration.load(hand_eye_file).gripper_T_camera)
-        self.image: Image | None = None
-        self.intrinsics: Intrinsics | None = None
+        self.camera = BoardCamera(image_topic, info_topic, board)
         self.computed: Calibration | None = None
-        rospy.Subscriber(image_topic, Image, self._on_image, queue_size=1, buff_size=1 << 24)
-        rospy.Subscriber(info_topic, CameraInfo, self._on_info, queue_size=1)
         rospy.Service("~take", TakeMeasurement, self._on_take)
         rospy.Service("~undo", Trigger, self._on_undo)
         rospy.Service("~compute", Trigger, self._on_compute)
         rospy.Service("~save", SaveCalibration, self._on_save)
         rospy.Service("~status", Trigger, self._on_status)
-
-    def _on_image(self, message: Image) -> None:
-        self.image, self.image_at = message, time.monotonic()
-
-    def _on_info(self, message: CameraInfo) -> None:
-        self.intrinsics = intrinsics_of(message)
 
     def _on_take(self, request) -> TakeMeasurementResponse:
         try:
@@ -138,18 +84,12 @@ class GlobalFrameRegistration(Node):
                 if request.dot:
                     self.registration.take_touch(request.arm, request.dot, poses[:, :3, 3], joints)
                 else:
-                    self.registration.take_view(request.arm, self._view(poses), joints)
+                    seen = self.camera.look()
+                    view = View(poses[-1], seen.camera_T_board, seen.rms_px)
+                    self.registration.take_view(request.arm, view, joints)
                 return TakeMeasurementResponse(True, self.registration.status()[request.arm])
         except Error as error:
             return TakeMeasurementResponse(False, str(error))
-
-    def _view(self, poses: np.ndarray) -> View:
-        if self.image is None or time.monotonic() - self.image_at > STALE_S:
-            raise CalibrationError("no image of the endoscope now")
-        if self.intrinsics is None:
-            raise CalibrationError("no camera_info: calibrate the camera first")
-        seen = locate_board(grey(self.image), self.registration.board, self.intrinsics)
-        return View(poses[-1], seen.camera_T_board, seen.rms_px)
 
     def _on_undo(self, _request) -> TriggerResponse:
         return self._answer(lambda: "forgotten: " + self.registration.undo())
@@ -165,19 +105,12 @@ class GlobalFrameRegistration(Node):
         return self._answer(lambda: "\n".join(f"{a}: {text}" for a, text in self.registration.status().items()))
 
     def _answer(self, act) -> TriggerResponse:
-        try:
-            with self.lock:
-                return TriggerResponse(True, act())
-        except Error as error:
-            return TriggerResponse(False, str(error))
+        with self.lock:
+            return calibration_services.answer(act)
 
     def _on_save(self, request) -> SaveCalibrationResponse:
         try:
-            if self.computed is None:
-                raise CalibrationError("nothing computed since the last measurement: call compute first")
-            if not request.path.startswith("/"):
-                raise ConfigError(f"path = {request.path!r}: must be absolute")
-            self.computed.save(request.path, request.force)
+            calibration_services.save(self.computed, request.path, request.force)
         except (Error, OSError) as error:
             return SaveCalibrationResponse(False, str(error))
         try:  # the platform may not run yet: then the launch argument takes the file

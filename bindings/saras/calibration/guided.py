@@ -20,13 +20,10 @@ from saras import CalibrationError, ConfigError
 from saras.calibration.board import Board
 from saras.calibration.calibration_file import Calibration
 from saras.calibration.camera import BoardView
-from saras.calibration.hand_eye import HandEye, hand_eye, rotation_spread
+from saras.calibration.hand_eye_session import HandEyeSession, describe
 from saras.calibration.registration import Arm, Registration, View
 
 Array = npt.NDArray[np.float64]
-
-#: Fewer views give a hand-eye calibration that the last step would have to believe.
-LEAST_VIEWS = 8
 
 
 class Room(Protocol):
@@ -67,8 +64,7 @@ class Guide:
         self.rounds = rounds
         self.room, self.endoscope, self.console, self.automatic = room, endoscope, console, automatic
         self.registration = Registration(room.board, room.world_T_board, room.arms)
-        self.pairs: list[tuple[Array, BoardView]] = []
-        self.hand_eye: HandEye | None = None
+        self.hand_eye = HandEyeSession()
 
     def run(self) -> Calibration:
         """All steps. Raises QuitError; CalibrationError when the user gives up on a step that cannot succeed."""
@@ -118,14 +114,14 @@ class Guide:
                 answer = self._ask(
                     f"View {view + 1} of {wanted}: all markers in the image, turned away from the last views"
                 )
-                if answer == "u" and self.pairs:
-                    self.pairs.pop()
+                if answer == "u" and self.hand_eye.pairs:
+                    self.hand_eye.undo()
                     view = max(0, view - 1)
                     self.console.print("  [yellow]the last view is forgotten[/]")
                     continue
                 if answer != "s":
                     try:
-                        self._take_pair(view)
+                        self.console.print(f"  [green]taken[/] {self.hand_eye.take(*self.room.see(view))}")
                     except CalibrationError as error:
                         self._refused(error)
                         if not self.automatic:
@@ -139,46 +135,14 @@ class Guide:
                 self._refused(error)
                 if self.automatic or self._ask("Enter: take more views; q: give up") == "q":
                     raise
-                self.pairs.clear()
+                self.hand_eye.clear()
                 view = 0
 
-    def _take_pair(self, view: int) -> None:
-        gripper, seen = self.room.see(view)
-        for number, (before, _) in enumerate(self.pairs, start=1):
-            turn = float(np.linalg.norm(saras.displacement(before, gripper)[3:]))
-            if turn < 0.02:
-                raise CalibrationError(
-                    f"turned by {np.rad2deg(turn):.1f} deg only since view {number}: must be >= 1.1 deg"
-                )
-        self.pairs.append((gripper, seen))
-        spread = np.rad2deg(rotation_spread([pair[0] for pair in self.pairs]))
-        line = f"markers {' '.join(map(str, seen.marker_ids))}, corners fit to {seen.rms_px:.2f} px"
-        self.console.print(f"  [green]taken[/] {line}; rotation spread {spread[0]:.0f}, {spread[1]:.0f} deg")
-        if len(self.pairs) >= 5:
-            try:
-                found = self._solved()
-            except CalibrationError:
-                return
-            std = 1e3 * float(np.sqrt(np.trace(found.covariance[:3, :3])))
-            self.console.print(f"  [dim]residual {1e3 * found.rms_m:.2f} mm; camera known to {std:.2f} mm[/]")
-
-    def _solved(self) -> HandEye:
-        grippers = np.array([gripper for gripper, _ in self.pairs])
-        return hand_eye(grippers, np.array([seen.camera_T_board for _, seen in self.pairs]))
-
     def _solve_hand_eye(self) -> None:
-        if len(self.pairs) < LEAST_VIEWS:
-            raise CalibrationError(f"views = {len(self.pairs)}: must be >= {LEAST_VIEWS}")
-        self.hand_eye = found = self._solved()
+        found = self.hand_eye.compute()
         self.registration.gripper_T_camera[self.endoscope] = found.gripper_T_camera
         self.registration.camera_covariance[self.endoscope] = found.covariance
-        std = np.sqrt(np.diag(found.covariance))
-        left_out = [str(i) for i, used in enumerate(found.used, start=1) if not used]
-        self.console.print(
-            f"  camera on the endoscope: known to {1e3 * np.linalg.norm(std[:3]):.2f} mm, "
-            f"{np.rad2deg(np.linalg.norm(std[3:])):.3f} deg; residual {1e3 * found.rms_m:.2f} mm"
-            + (f"; views left out: {', '.join(left_out)}" if left_out else "")
-        )
+        self.console.print(f"  camera on the endoscope: {describe(found)}")
 
     # ---- dots and views
 
@@ -218,7 +182,7 @@ class Guide:
         arm = self.endoscope
         joints = self.room.joints_rad(arm) or None
         # The hand-eye views show the same board, unmoved: they say where the base is as well.
-        for gripper, seen in self.pairs:
+        for gripper, seen in self.hand_eye.pairs:
             try:
                 self.registration.take_view(arm, View(gripper, seen.camera_T_board, seen.rms_px), joints)
             except CalibrationError as error:
@@ -268,4 +232,4 @@ def save(calibration: Calibration, path: Path, force: bool, console: Console, fr
     console.print(f"[green]saved[/] {path}; the platform takes it with [bold]calibration:={path.resolve()}[/]")
 
 
-__all__ = ["LEAST_VIEWS", "Guide", "QuitError", "Room", "errors", "save", "summary"]
+__all__ = ["Guide", "QuitError", "Room", "errors", "save", "summary"]
