@@ -1,12 +1,14 @@
-"""Images and camera_info as numpy: what the calibration needs of cv_bridge, without it."""
+"""Images and camera_info as numpy: what calibration and endoscope need of cv_bridge, without it."""
 
 from __future__ import annotations
 
 import numpy as np
+import rospy
 from sensor_msgs.msg import CameraInfo, Image
 
 from saras import CalibrationError
 from saras.calibration.camera import Intrinsics
+from saras.calibration.camera_info import MODEL, Eye
 
 CHANNELS = {"mono8": 1, "bgr8": 3, "rgb8": 3, "bgra8": 4, "rgba8": 4}
 # Rec. 601, as OpenCV turns colours to grey.
@@ -15,16 +17,28 @@ WEIGHTS = {"rgb": (0.299, 0.587, 0.114), "bgr": (0.114, 0.587, 0.299)}
 
 def grey(message: Image) -> np.ndarray:
     """(height, width) of an 8-bit image. Raises CalibrationError for other encodings and sizes that do not fit."""
+    pixels = _pixels(message)
+    if pixels.shape[2] == 1:
+        return np.ascontiguousarray(pixels[:, :, 0])
+    return np.round(pixels[:, :, :3] @ np.array(WEIGHTS[message.encoding[:3]])).astype(np.uint8)
+
+
+def colours(message: Image) -> np.ndarray:
+    """(height, width, 3) BGR of an 8-bit image, or (height, width) of a grey one. Raises as grey does."""
+    pixels = _pixels(message)
+    if pixels.shape[2] == 1:
+        return pixels[:, :, 0]
+    return pixels[:, :, :3] if message.encoding.startswith("bgr") else pixels[:, :, 2::-1]
+
+
+def _pixels(message: Image) -> np.ndarray:
     channels = CHANNELS.get(message.encoding)
     if channels is None:
         raise CalibrationError(f"image encoding = {message.encoding!r}: must be one of {', '.join(CHANNELS)}")
     if message.step < message.width * channels or len(message.data) < message.step * message.height:
         raise CalibrationError(f"image of {len(message.data)} bytes: must hold {message.height} rows of {message.step}")
     rows = np.frombuffer(message.data, np.uint8)[: message.step * message.height].reshape(message.height, message.step)
-    pixels = rows[:, : message.width * channels].reshape(message.height, message.width, channels)
-    if channels == 1:
-        return np.ascontiguousarray(pixels[:, :, 0])
-    return np.round(pixels[:, :, :3] @ np.array(WEIGHTS[message.encoding[:3]])).astype(np.uint8)
+    return rows[:, : message.width * channels].reshape(message.height, message.width, channels)
 
 
 def intrinsics_of(message: CameraInfo) -> Intrinsics | None:
@@ -34,3 +48,32 @@ def intrinsics_of(message: CameraInfo) -> Intrinsics | None:
     distortion = np.zeros(5)
     distortion[: min(5, len(message.D))] = message.D[:5]
     return Intrinsics(np.array(message.K).reshape(3, 3), distortion, message.width, message.height)
+
+
+def eye_of(message: CameraInfo) -> Eye | None:
+    """All that a camera_info says; None for a camera that is not calibrated."""
+    intrinsics = intrinsics_of(message)
+    if intrinsics is None or not message.P[0] > 0.0:
+        return None
+    return Eye(intrinsics, np.array(message.R).reshape(3, 3), np.array(message.P).reshape(3, 4))
+
+
+def camera_info_msg(eye: Eye | None, size: tuple[int, int], frame_id: str, stamp: rospy.Time) -> CameraInfo:
+    """Of a calibrated eye; None: of images of this size (width, height) whose camera is not calibrated (K = 0)."""
+    message = CameraInfo(width=size[0], height=size[1])
+    message.header.frame_id, message.header.stamp = frame_id, stamp
+    if eye is not None:
+        message.distortion_model = MODEL
+        message.D = eye.intrinsics.distortion.tolist()
+        message.K = eye.intrinsics.matrix.ravel().tolist()
+        message.R, message.P = eye.R.ravel().tolist(), eye.P.ravel().tolist()
+    return message
+
+
+def image_msg(pixels: np.ndarray, encoding: str, frame_id: str, stamp: rospy.Time) -> Image:
+    """Of (height, width) or (height, width, channels), C-contiguous."""
+    message = Image(height=pixels.shape[0], width=pixels.shape[1], encoding=encoding)
+    message.header.frame_id, message.header.stamp = frame_id, stamp
+    message.step = pixels.shape[1] * pixels.itemsize * (pixels.shape[2] if pixels.ndim == 3 else 1)
+    message.data = pixels.tobytes()
+    return message

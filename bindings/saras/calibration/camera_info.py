@@ -106,6 +106,14 @@ def rectified(left: Intrinsics, right: Intrinsics, right_T_left: Array, name: st
     return Eye(left, r1, p1, f"{name}_left"), Eye(right, r2, p2, f"{name}_right")
 
 
+def right_T_left(left: Eye, right: Eye) -> Array:
+    """(4, 4) of the raw optical frames, from what both rectifications say."""
+    pose = np.eye(4)
+    pose[:3, :3] = right.R.T @ left.R
+    pose[:3, 3] = right.R.T @ [-right.baseline_m, 0.0, 0.0]
+    return pose
+
+
 def _matrix(matrix: Array) -> dict[str, Any]:
     rows, columns = matrix.shape
     return {"rows": rows, "cols": columns, "data": [float(f"{value:.12g}") for value in matrix.ravel()]}
@@ -129,4 +137,4 @@ def _numbers(document: dict[str, Any], key: str, shape: tuple[int, int], path: s
     return values.reshape(shape)
 
 
-__all__ = ["Eye", "rectified"]
+__all__ = ["Eye", "rectified", "right_T_left"]

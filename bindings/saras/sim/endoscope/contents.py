@@ -75,7 +75,7 @@ class Contents:
         self._dents: Array | None = None
         actor = _textured(self._sheet.data, textures.tissue(rng))
         actor.GetMapper().ScalarVisibilityOn()  # its brightness
-        self._add("tissue", actor, self.room.surface.world_T_surface, specular=0.8)
+        self._add("tissue", actor, self.room.surface.world_T_surface, specular=0.55)
         self._press([])
 
     def light_from(self, point: Array, full_m: float) -> None:

@@ -23,7 +23,7 @@ Image = npt.NDArray[np.uint8]
 NEAR_M, FAR_M = 0.004, 0.9
 #: How far apart depths of neighbouring pixels may be to be one surface [m].
 EDGE_M = 2e-3
-LAMP = 1.5
+LAMP = 1.2
 #: The tools of the operating room and what they are.
 TOOLS = {"mesa_left": "mesa", "mesa_right": "mesa", "PSM1": "psm", "PSM2": "psm"}
 

@@ -18,15 +18,11 @@ class NoWindowError(Error):
     """There is nothing to draw into; the text says what is missing."""
 
 
-def offscreen_window(width: int, height: int) -> Any:
-    """A vtkRenderWindow that no one sees, of this size. To be used in the thread that made it.
-
-    Raises NoWindowError: no VTK, or a VTK that needs a display where there is none.
-    """
+def check_drawing() -> None:
+    """Raises NoWindowError: no VTK, or a VTK that needs a display where there is none."""
     try:
         import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 (registers the OpenGL classes)
         from vtkmodules.vtkCommonCore import vtkVersion
-        from vtkmodules.vtkRenderingCore import vtkRenderWindow
     except ImportError as error:
         raise NoWindowError(f"the simulated endoscope needs VTK: pip install vtk ({error})") from None
     version = vtkVersion.GetVTKMajorVersion(), vtkVersion.GetVTKMinorVersion()
@@ -36,6 +32,13 @@ def offscreen_window(width: int, height: int) -> Any:
         raise NoWindowError(
             f"VTK {version[0]}.{version[1]} draws on a display only: must be >= 9.4 (pip install vtk), or start Xvfb"
         )
+
+
+def offscreen_window(width: int, height: int) -> Any:
+    """A vtkRenderWindow that no one sees, of this size. To be used in the thread that made it. As check_drawing."""
+    check_drawing()
+    from vtkmodules.vtkRenderingCore import vtkRenderWindow
+
     window = vtkRenderWindow()
     window.SetOffScreenRendering(1)
     window.SetMultiSamples(0)
@@ -70,4 +73,4 @@ class Pixels:
         return values
 
 
-__all__ = ["NoWindowError", "Pixels", "offscreen_window"]
+__all__ = ["NoWindowError", "Pixels", "check_drawing", "offscreen_window"]
