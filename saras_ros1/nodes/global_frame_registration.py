@@ -7,18 +7,14 @@ It publishes no transform itself: the node `frames` is asked to load what was sa
 
 from __future__ import annotations
 
-import numpy as np
 import rospy
 from std_srvs.srv import Trigger, TriggerResponse
 
-from saras import CalibrationError, Error
-from saras.calibration.board import Board
+from saras import Error
 from saras.calibration.calibration_file import Calibration
-from saras.calibration.registration import Arm, Registration, View
-from saras.kinematics import scene as scenes
+from saras.calibration.registration import Registration, View
 from saras_ros1 import calibration_services
-from saras_ros1.arm_readings import ArmReadings
-from saras_ros1.board_camera import BoardCamera
+from saras_ros1.calibration_room import CalibrationRoom
 from saras_ros1.node import Node, run
 from saras_ros1.srv import (
     LoadCalibration,
@@ -28,44 +24,16 @@ from saras_ros1.srv import (
     TakeMeasurementResponse,
 )
 
-ALL_ARMS = {"mesa_left", "mesa_right", "PSM1", "PSM2", "ECM"}
-
 
 class GlobalFrameRegistration(Node):
     """Holds one Registration. Services block while a measurement lasts."""
 
     def __init__(self) -> None:
         super().__init__("global_frame_registration")
-        scene_file = self.params.text("scene_file")
-        board_file = self.params.text("board_file", empty=True)
-        self.touch_s = self.params.number("touch_s", 0.05, 5.0)
-        place = self.params.section("world_T_board")
-        world_T_board = scenes.pose_from_xyz_rpy(
-            place.vector("xyz_m", 3, -10.0, 10.0), place.vector("rpy_rad", 3, -2.0 * np.pi, 2.0 * np.pi)
-        )
-        endoscope = self.params.section("endoscope")
-        self.endoscope = endoscope.text("arm", empty=True)
-        image_topic, info_topic = endoscope.text("image_topic"), endoscope.text("camera_info_topic")
-        hand_eye_file = endoscope.text("hand_eye_file", empty=True)
-        scene = scenes.load(scene_file)
-        self.readings: dict[str, ArmReadings] = {}
-        arms = {}
-        section = self.params.section("arms")
-        for name in self.params.texts("register"):
-            entry = section.section(name)
-            frame = entry.text("frame")
-            trocar = entry.vector("trocar_m", 3, -1.0, 1.0)
-            arms[name] = Arm(name, frame, trocar, scene.world_T(frame), entry.number("max_off_m", 0.0, 10.0))
-            topics = entry.text("pose_topic"), entry.text("joints_topic", empty=True)
-            self.readings[name] = ArmReadings(name, frame, *topics, entry.texts("joints"))
-        for name in ALL_ARMS - set(arms):
-            if section.has(name):
-                section.skip(name)
-        board = Board.load(board_file) if board_file else Board()
-        self.registration = Registration(board, world_T_board, arms)
-        if hand_eye_file:
-            self.registration.gripper_T_camera.update(Calibration.load(hand_eye_file).gripper_T_camera)
-        self.camera = BoardCamera(image_topic, info_topic, board)
+        self.room = CalibrationRoom(self.params, self.params.text("scene_file"))
+        self.params.finish()
+        self.registration = Registration(self.room.board, self.room.world_T_board, self.room.arms)
+        self.registration.gripper_T_camera.update(self.room.gripper_T_camera)
         self.computed: Calibration | None = None
         rospy.Service("~take", TakeMeasurement, self._on_take)
         rospy.Service("~undo", Trigger, self._on_undo)
@@ -75,16 +43,14 @@ class GlobalFrameRegistration(Node):
 
     def _on_take(self, request) -> TakeMeasurementResponse:
         try:
-            if request.arm not in self.readings:
-                raise CalibrationError(f"arm = {request.arm!r}: must be one of {', '.join(self.readings)}")
-            reading = self.readings[request.arm]
-            poses, joints = reading.over(self.touch_s), reading.under_base()
+            poses = self.room.poses(request.arm)
+            joints = self.room.joints_rad(request.arm) or None
             with self.lock:
                 self.computed = None
                 if request.dot:
                     self.registration.take_touch(request.arm, request.dot, poses[:, :3, 3], joints)
                 else:
-                    seen = self.camera.look()
+                    seen = self.room.camera.look()
                     view = View(poses[-1], seen.camera_T_board, seen.rms_px)
                     self.registration.take_view(request.arm, view, joints)
                 return TakeMeasurementResponse(True, self.registration.status()[request.arm])

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import os
+import re
+import subprocess
 import tempfile
 import threading
 import unittest
@@ -11,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import rospy
 import rostest
+import yaml
 from geometry_msgs.msg import PoseStamped
 from saras_ros1.srv import LoadCalibration, SaveCalibration, TakeMeasurement
 from sensor_msgs.msg import JointState
@@ -18,6 +22,7 @@ from std_srvs.srv import Trigger
 from support import ROOT, wait_until
 
 import saras
+from saras.calibration.calibration_file import Calibration as FileOfCalibration
 from saras.calibration.simulated import MESA_ARMS, PSM_ARMS, SimulatedRoom
 from saras.kinematics import scene
 from saras_ros1 import convert
@@ -122,6 +127,53 @@ class Calibration(unittest.TestCase):
         answer = rospy.ServiceProxy("/frames/load_calibration", LoadCalibration)(self.path)
         self.assertTrue(answer.success, answer.message)
         wait_until(lambda: self.place("mesa_left/sbs_world") is not None, "the base known again")
+
+    def test_5_the_guided_procedure_in_a_terminal(self) -> None:
+        arms = ("mesa_left", "mesa_right")
+        config = yaml.safe_load((ROOT / "config" / "calibration.yaml").read_text(encoding="utf-8"))
+        config["global_frame_registration"].update(register=list(arms), touch_s=0.2)
+        directory = Path(tempfile.mkdtemp())
+        (directory / "calibration.yaml").write_text(yaml.safe_dump(config), encoding="utf-8")
+        out = directory / "guided.yaml"
+        command = ["rosrun", "saras_ros1", "calibrate", "--config", str(directory / "calibration.yaml")]
+        command += ["--out", str(out), "--rounds", "2"]
+        said: list[str] = []
+        with subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env={**os.environ, "COLUMNS": "200"}
+        ) as program:
+            undone = False
+            for text in prompts(program.stdout):
+                said.append(text)
+                if "(Enter, u, s, q)" not in text:
+                    continue
+                arm, dot = re.findall(r"(mesa_\w+): tip on dot (\d)", text)[-1]
+                answer = ""
+                if int(dot) not in self.room.reachable_dots(arm):
+                    answer = "s"
+                elif "taken" in text and not undone:
+                    answer, undone = "u", True
+                else:
+                    type(self).tips[arm] = self.room.touch(arm, int(dot)).mean(axis=0)
+                    rospy.sleep(0.2)
+                program.stdin.write(answer + "\n")
+                program.stdin.flush()
+            self.assertEqual(program.wait(30.0), 0, "".join(said)[-2000:])
+        self.assertIn("forgotten: touch", "".join(said))
+        found = FileOfCalibration.load(out, frames=[self.room.frame(arm) for arm in arms])
+        for arm in arms:
+            off = saras.displacement(found.frames[self.room.frame(arm)].parent_T_frame, self.room.truth(arm))
+            self.assertLess(np.linalg.norm(off[:3]), 3e-3)
+
+
+def prompts(stream):
+    """What a program prints, cut at each of its prompts and at each line."""
+    text = ""
+    while character := stream.read(1):
+        text += character
+        if text.endswith(("(Enter, u, s, q) ", "\n")):
+            yield text
+            text = "" if text.endswith("\n") and "taken" not in text else text if text.endswith("\n") else ""
+    yield text
 
 
 if __name__ == "__main__":
