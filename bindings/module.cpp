@@ -23,6 +23,10 @@ PYBIND11_MODULE(_core, m) {
   saras::bindings::bind_console(console);
   auto pipeline = m.def_submodule("pipeline", "Both sides of the teleoperation in one step");
   saras::bindings::bind_pipeline(pipeline);
+  auto overlay = m.def_submodule("overlay", "What the surgeons see on the endoscope's images");
+  saras::bindings::bind_overlay(overlay);
+  auto contact = m.def_submodule("contact", "Force of a contact that a camera sees");
+  saras::bindings::bind_contact(contact);
 #ifdef SARAS_WITH_RUNTIME
   auto runtime = m.def_submodule("runtime", "The real-time host: loop, mailboxes, flight recorder");
   saras::bindings::bind_runtime(runtime);

@@ -16,6 +16,8 @@ from . import net
 from . import safety
 from . import console
 from . import pipeline
+from . import overlay
+from . import contact
 from . import runtime
 
 __all__: list[str] = [
@@ -29,9 +31,11 @@ __all__: list[str] = [
     "calibration",
     "collision",
     "console",
+    "contact",
     "displacement",
     "kinematics",
     "net",
+    "overlay",
     "pipeline",
     "runtime",
     "safety",
