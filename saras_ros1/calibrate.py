@@ -32,7 +32,13 @@ def parse(argv: list[str] | None = None) -> argparse.Namespace:
     )
     parser.add_argument("--config", type=Path, default=CONFIG / "calibration.yaml", help="board, arms, topics")
     parser.add_argument("--scene", type=Path, default=CONFIG / "scene.yaml", help="where the bases are expected")
-    parser.add_argument("--rounds", type=int, default=4, help="touches of each dot (default %(default)s)")
+    parser.add_argument("--rounds", type=int, default=4, help="least touches of each dot (default %(default)s)")
+    parser.add_argument(
+        "--known-to-mm",
+        type=float,
+        default=0.3,
+        help="more touches until the base is known to it (default %(default)s)",
+    )
     parser.add_argument("--out", type=Path, default=Path("calibration.yaml"), help="default %(default)s")
     parser.add_argument("--force", action="store_true", help="write over an existing file")
     return parser.parse_args(rospy.myargv(argv)[1:] if argv is None else argv)
@@ -47,7 +53,8 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     room = CalibrationRoom(params, str(arguments.scene))
     params.finish()
     try:
-        calibration = Guide(room, room.endoscope, console, rounds=arguments.rounds).run()
+        wanted = {"rounds": arguments.rounds, "known_to_m": 1e-3 * arguments.known_to_mm}
+        calibration = Guide(room, room.endoscope, console, **wanted).run()
     except (QuitError, EOFError):
         console.print("ended; nothing was saved", style="yellow")
         return 1

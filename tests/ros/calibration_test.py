@@ -136,7 +136,7 @@ class Calibration(unittest.TestCase):
         (directory / "calibration.yaml").write_text(yaml.safe_dump(config), encoding="utf-8")
         out = directory / "guided.yaml"
         command = ["rosrun", "saras_ros1", "calibrate", "--config", str(directory / "calibration.yaml")]
-        command += ["--out", str(out), "--rounds", "2"]
+        command += ["--out", str(out), "--rounds", "2", "--known-to-mm", "2"]
         said: list[str] = []
         with subprocess.Popen(
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env={**os.environ, "COLUMNS": "200"}

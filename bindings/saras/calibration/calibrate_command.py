@@ -36,7 +36,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     simulated.add_argument("--board", type=Path, help="its YAML (saras board); default: the standard board")
     simulated.add_argument("--seed", type=int, default=1, help="of the simulated noise (default %(default)s)")
     simulated.add_argument("--touch-noise-m", type=float, default=0.5e-3, help="per axis (default %(default)s)")
-    simulated.add_argument("--rounds", type=int, default=4, help="touches of each dot (default %(default)s)")
+    simulated.add_argument("--rounds", type=int, default=4, help="least touches of each dot (default %(default)s)")
+    simulated.add_argument(
+        "--known-to-mm",
+        type=float,
+        default=0.3,
+        help="more touches until the base is known to it (default %(default)s)",
+    )
     simulated.add_argument("--yes", action="store_true", help="no prompts: take everything")
     simulated.add_argument("--out", type=Path, default=Path("calibration.yaml"), help="default %(default)s")
     simulated.add_argument("--force", action="store_true", help="write over an existing file")
@@ -84,7 +90,15 @@ def _simulation(arguments: argparse.Namespace) -> int:
     board = Board.load(arguments.board) if arguments.board else Board()
     room = SimulatedRoom(scene.load(arguments.scene), board, arguments.seed, Noise(touch_m=arguments.touch_noise_m))
     try:
-        calibration = Guide(room, ENDOSCOPE, console, automatic=arguments.yes, rounds=arguments.rounds).run()
+        guide = Guide(
+            room,
+            ENDOSCOPE,
+            console,
+            automatic=arguments.yes,
+            rounds=arguments.rounds,
+            known_to_m=1e-3 * arguments.known_to_mm,
+        )
+        calibration = guide.run()
     except (QuitError, EOFError):
         console.print("ended; nothing was saved", style="yellow")
         return 1

@@ -26,6 +26,12 @@ from saras.calibration.registration import Arm, Registration, View
 Array = npt.NDArray[np.float64]
 
 
+#: Of a base's origin, along its worst axis: one standard deviation. With it four arms in a row are mostly within 1 mm.
+KNOWN_TO_M = 0.4e-3
+#: of each dot; more of them would not make a bad touch better
+MOST_ROUNDS = 12
+
+
 class Room(Protocol):
     """What the procedure asks of the room. Each raises CalibrationError with the reason when it cannot answer."""
 
@@ -58,10 +64,23 @@ class QuitError(Exception):
 
 
 class Guide:
-    """Leads through the steps. automatic: presses Enter by itself (simulation); rounds: touches of each dot."""
+    """Leads through the steps. automatic: presses Enter by itself (simulation).
 
-    def __init__(self, room: Room, endoscope: str, console: Console, automatic: bool = False, rounds: int = 4) -> None:
-        self.rounds = rounds
+    rounds: least touches of each dot; more are asked for until the base's origin is known to known_to_m (one standard
+    deviation along its worst axis).
+    """
+
+    def __init__(
+        self,
+        room: Room,
+        endoscope: str,
+        console: Console,
+        *,
+        automatic: bool = False,
+        rounds: int = 4,
+        known_to_m: float = KNOWN_TO_M,
+    ) -> None:
+        self.rounds, self.known_to_m = rounds, known_to_m
         self.room, self.endoscope, self.console, self.automatic = room, endoscope, console, automatic
         self.registration = Registration(room.board, room.world_T_board, room.arms)
         self.hand_eye = HandEyeSession()
@@ -148,26 +167,7 @@ class Guide:
 
     def _dots(self, arm: str) -> None:
         while True:
-            dots = self.room.reachable_dots(arm)
-            rounds = dots * self.rounds  # again: less error, and a wrong dot shows
-            i = 0
-            while i < len(rounds):
-                answer = self._ask(f"{arm}: tip on dot [bold]{rounds[i]}[/], from above, hold still")
-                if answer == "u":
-                    i = max(0, i - 1)
-                    self._undo()
-                    continue
-                if answer != "s":
-                    try:
-                        tips = self.room.touch(arm, rounds[i])
-                        self.registration.take_touch(arm, rounds[i], tips, self.room.joints_rad(arm) or None)
-                    except CalibrationError as error:
-                        self._refused(error)
-                        if not self.automatic:
-                            continue
-                    else:
-                        self.console.print(f"  [green]taken[/] {self.registration.status()[arm]}")
-                i += 1
+            self._touch_rounds(arm, self.room.reachable_dots(arm))
             try:
                 self.registration.base_frame(arm)
                 return
@@ -177,6 +177,48 @@ class Guide:
                     raise
                 self._ask("Enter: touch this arm's dots anew")
                 self.registration.clear(arm)
+
+    def _touch_rounds(self, arm: str, dots: list[int]) -> None:
+        """Every dot again and again: less error, and a wrong dot shows."""
+        taken: list[bool] = []  # of each prompt that was answered; a skipped one is False
+        while not self._enough(arm, len(taken), len(dots)):
+            dot = dots[len(taken) % len(dots)]
+            answer = self._ask(f"{arm}: tip on dot [bold]{dot}[/], from above, hold still")
+            if answer == "d":
+                return
+            if answer == "u":
+                if taken and taken.pop():
+                    self._undo()
+                continue
+            if answer != "s":
+                try:
+                    tips = self.room.touch(arm, dot)
+                    self.registration.take_touch(arm, dot, tips, self.room.joints_rad(arm) or None)
+                except CalibrationError as error:
+                    self._refused(error)
+                    if not self.automatic:
+                        continue
+                    answer = "s"
+                else:
+                    self.console.print(f"  [green]taken[/] {self.registration.status()[arm]}")
+            taken.append(answer != "s")
+
+    def _enough(self, arm: str, prompts: int, dots: int) -> bool:
+        """At the end of a round: whether the base is known as well as wanted."""
+        if prompts % dots or prompts < self.rounds * dots:
+            return False
+        try:
+            std_m = self.registration.base_frame(arm).std_m
+        except CalibrationError:
+            return True  # who asked says why
+        if std_m <= self.known_to_m:
+            return True
+        if prompts >= MOST_ROUNDS * dots:
+            self.console.print(f"  [yellow]known to {1e3 * std_m:.2f} mm only; the touches differ too much[/]")
+            return True
+        wanted = f"wanted {1e3 * self.known_to_m:.2f} mm"
+        self.console.print(f"  known to {1e3 * std_m:.2f} mm, {wanted}: another round [dim](d: it is enough)[/]")
+        return False
 
     def _views(self) -> None:
         arm = self.endoscope
@@ -232,4 +274,4 @@ def save(calibration: Calibration, path: Path, force: bool, console: Console, fr
     console.print(f"[green]saved[/] {path}; the platform takes it with [bold]calibration:={path.resolve()}[/]")
 
 
-__all__ = ["Guide", "QuitError", "Room", "errors", "save", "summary"]
+__all__ = ["KNOWN_TO_M", "Guide", "QuitError", "Room", "errors", "save", "summary"]
