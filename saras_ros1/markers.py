@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from typing import Any
 
 from geometry_msgs.msg import Point
@@ -69,6 +70,10 @@ def trail(namespace: str, frame: str, points: list[Point], colour: ColorRGBA) ->
     return marker
 
 
+#: wider lines of one side would run into the label of the other
+LABEL_COLUMNS = 26
+
+
 def label(namespace: str, frame: str, height_m: float, state: Any | None, energies: dict[str, Any]) -> Marker:
     """State and energies of a side; a grey "?" for what is not known."""
     name, colour = STATE_STYLE.get(state.state, ("?", GREY)) if state is not None else ("?", GREY)
@@ -79,5 +84,6 @@ def label(namespace: str, frame: str, height_m: float, state: Any | None, energi
     marker.pose.position.z = height_m
     marker.text = f"{namespace.split()[0]} {name}\n{levels}"
     if state is not None and state.state != ENGAGED:
-        marker.text += "".join(f"\n{words}" for words in (state.reason, state.advice) if words)
+        lines = [line for words in (state.reason, state.advice) for line in textwrap.wrap(words, LABEL_COLUMNS)]
+        marker.text += "".join(f"\n{line}" for line in lines)
     return marker
