@@ -123,7 +123,7 @@ void bind_overlay_tools(py::module_& m) {
       "color_of",
       [](ProximityState level) {
         const Color c = color_of(level);
-        return std::array<int, 4>{c.r, c.g, c.b, c.mono};
+        return py::make_tuple(c.r, c.g, c.b, c.mono);
       },
       py::arg("level"), "Red, green, blue, and what stands for them in mono8, each 0 to 255.");
 }

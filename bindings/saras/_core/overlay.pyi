@@ -748,7 +748,7 @@ class OverlayPainter:
         image: uint8 (height, width[, channels]); encoding: bgr8, rgb8, mono8, bgra8 or rgba8.
         """
 
-def color_of(level: saras._core.collision.ProximityState) -> typing.Annotated[list[int], "FixedSize(4)"]:
+def color_of(level: saras._core.collision.ProximityState) -> tuple[int, int, int, int]:
     """
     Red, green, blue, and what stands for them in mono8, each 0 to 255.
     """

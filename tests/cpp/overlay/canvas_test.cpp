@@ -75,6 +75,18 @@ TEST(Canvas, EachFormatGetsItsBytes) {
   }
 }
 
+TEST(Canvas, BlendingIsRoundedBothWays) {
+  for (const int background : {0, 25, 128, 255}) {
+    for (const int color : {0, 25, 140, 255}) {
+      for (int coverage = 0; coverage <= 255; ++coverage) {
+        std::uint8_t pixel = static_cast<std::uint8_t>(background);
+        blend(&pixel, 1, {{static_cast<std::uint8_t>(color), 0, 0, 255}}, coverage);
+        ASSERT_NEAR(pixel, background + (color - background) * coverage / 255.0, 0.51);
+      }
+    }
+  }
+}
+
 TEST(Canvas, EncodingsByName) {
   PixelFormat format = PixelFormat::kMono8;
   EXPECT_TRUE(parse_encoding("bgra8", format));

@@ -16,11 +16,11 @@ inline void draw_disc(const ImageView& image, const Pixel& center, double radius
 }
 /// Every pixel of the box at share/256 of its brightness.
 void darken(const ImageView& image, int x, int y, int width, int height, int share) noexcept;
-/// pixel = background + coverage/255 (color - background), for one pixel within the image.
+/// pixel = background + coverage/255 (color - background), rounded, for one pixel within the image.
 inline void blend(std::uint8_t* pixel, int channels, const PixelBytes& color, int coverage) noexcept {
   for (int c = 0; c < channels; ++c) {
     const int background = c == 3 ? 255 : pixel[c];
-    pixel[c] = static_cast<std::uint8_t>(background + ((color.byte[c] - background) * coverage + 127) / 255);
+    pixel[c] = static_cast<std::uint8_t>((background * (255 - coverage) + color.byte[c] * coverage + 127) / 255);
   }
 }
 
