@@ -114,6 +114,8 @@ def _read_transparency(pipeline: PipelineConfig) -> None:
     params.number("period_s", 0.001, 0.1)
     pipeline.handle_timeout_s = min(pipeline.handle_timeout_s, params.number("master_timeout_s", 0.005, 1.0))
     pipeline.arm_timeout_s = params.number("arm_timeout_s", 0.005, 1.0)
+    if params.text("force_source", ("arm", "contact")) != "arm":
+        raise ConfigError("/transparency/force_source = contact: hosting realtime takes the arm's wrench only")
     pipeline.transparency = params.build(TransparencyConfig, "law")
     pipeline.slave_twist = params.build(TwistEstimatorConfig, "slave_twist")
     proximity = params.section("proximity_force")

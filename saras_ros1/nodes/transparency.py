@@ -14,6 +14,7 @@ from saras_ros1.node import Node, Tick, run
 from saras_ros1.proximity import Proximity
 
 ZERO = np.zeros(6)
+FORCE_SOURCES = ("arm", "contact")
 
 
 class Side:
@@ -23,7 +24,13 @@ class Side:
         self.frame = base_frame(side)
         self.channel = Channel(node, side)
         feels_force = node.config.mode != TransparencyMode.POSITION_POSITION
-        self.arm = ArmInputs(node, side, node.arm_timeout_s, wrench=feels_force, twist=node.twist_config)
+        of_arm = feels_force and node.force_source == "arm"
+        self.arm = ArmInputs(node, side, node.arm_timeout_s, wrench=of_arm, twist=node.twist_config)
+        self.contact = None
+        if feels_force and not of_arm:
+            read_wrench = convert.in_frame(self.frame, convert.wrench)
+            topic = f"/contact_force/{side}/wrench"
+            self.contact = node.input(topic, WrenchStamped, read_wrench, timeout_s=node.arm_timeout_s)
         timeout_s, source = node.master_timeout_s, f"/tf_transformer_{side}"
         read_pose = convert.in_frame(self.frame, convert.pose)
         read_twist = convert.in_frame(self.frame, convert.twist)
@@ -53,7 +60,7 @@ class Side:
             master_twist_filtered=master[2],
             slave_pose=self.arm.pose.value,
             slave_twist=self.arm.twist_filtered,
-            tissue_wrench=self.arm.exerted_wrench,
+            tissue_wrench=self._tissue_wrench(),
             rcm=self.arm.rcm.value,
             clutch=self.channel.clutch,
             guidance_wrench=self._repulsion(tick.dt),
@@ -62,6 +69,13 @@ class Side:
         )
         self.status, self.error = out.status.name, out.error
         return self._publish(out.desired_wrench, out.desired_twist, tick)
+
+    def _tissue_wrench(self) -> np.ndarray:
+        """(6,) on the tissue; NaN when unknown: modes that need it then fade their force out, motion goes on."""
+        if self.contact is None:
+            return self.arm.exerted_wrench
+        value = self.contact.fresh_value
+        return np.full(6, np.nan) if value is None else value
 
     def _repulsion(self, dt: float) -> np.ndarray:
         """(6,) on the hand, away from what the tool is near to; zero when that is not known."""
@@ -83,6 +97,7 @@ class TransparencyNode(Node):
         self.period_s = self.params.number("period_s", 0.001, 0.1)
         self.master_timeout_s = self.params.number("master_timeout_s", 0.005, 1.0)
         self.arm_timeout_s = self.params.number("arm_timeout_s", 0.005, 1.0)
+        self.force_source = self.params.text("force_source", FORCE_SOURCES)
         self.config = self.params.build(TransparencyConfig, "law")
         self.twist_config = self.params.build(TwistEstimatorConfig, "slave_twist")
         proximity = self.params.section("proximity_force")

@@ -39,6 +39,7 @@ NODES = [
     ("supervisor.yaml", "supervisor", "supervisor", "Supervisor"),
     ("arms.yaml", "arm_driver_left", "arm_driver", "ArmDriverNode"),
     ("arms.yaml", "arm_state_left", "arm_state", "ArmStateNode"),
+    ("contact.yaml", "contact_force", "contact_force", "ContactForceNode"),
 ]
 #: numbers of which every finite value is good, or that only another one bounds
 UNBOUNDED = {"cone_axis", "console_port", "bind_port"}
