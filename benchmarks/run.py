@@ -20,12 +20,13 @@ import latency
 import peers
 import pipeline
 import scenario
+import stereo_contact
 import struct_codec
 
 from saras import net
 
 PYTHON_PEERS = {"teleop": ("numpy", peers.teleop), "codec": ("struct", peers.codec)}
-GROUPS = [*PYTHON_PEERS, "collision", "calibration", "latency"]
+GROUPS = [*PYTHON_PEERS, "collision", "calibration", "latency", "stereo_contact"]
 BENCH_PYTHON = Path(__file__).parents[1] / "bench-venv" / "bin" / "python"
 TOLERANCE = 1e-9
 COLLISION_PAIRS = 100_000
@@ -105,6 +106,7 @@ def run(groups, program, soak_s=0.0):
     rows += calibration.run(BENCH_PYTHON) if "calibration" in groups else []
     if "latency" in groups:
         rows += latency.run(program.with_name("saras_latency_benchmark"), soak_s)
+    rows += stereo_contact.run() if "stereo_contact" in groups else []
     return rows
 
 
@@ -148,7 +150,7 @@ def show(rows):
     for heading in ("ours", "peer", "their p50 : ours"):
         table.add_column(heading, justify="right")
     for row in rows:
-        digits = 3 if row["group"] == "calibration" else 0
+        digits = {"calibration": 3, "stereo_contact": 1}.get(row["group"], 0)
         ours = " / ".join(f"{row['ours'][p]:,.{digits}f}" for p in ("p50", "p99"))
         if not row["peers"]:
             table.add_row(row["group"], row["name"], row["unit"], ours, "", "")
