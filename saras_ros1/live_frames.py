@@ -33,6 +33,13 @@ class LiveFrames(StaticFrames):
                 names = f"{transform.header.frame_id} → {transform.child_frame_id}"
                 rospy.logwarn_throttle(1.0, f"/tf: {names} refused: {error}")
 
+    def at(self, target: str, source: str, stamp: rospy.Time) -> np.ndarray:
+        """(4, 4) target_T_source at a time, as tf2 interpolates it; else UnknownFrameError."""
+        try:
+            return convert.transform(self._buffer.lookup_transform(target, source, stamp))
+        except (tf2_ros.TransformException, ValueError) as error:
+            raise UnknownFrameError(f"no transform {source} to {target} at that time: {error}") from None
+
     def fresh(self, target: str, source: str) -> np.ndarray:
         """(4, 4) target_T_source, static or younger than timeout_s; else UnknownFrameError."""
         changes, matrix = self._static.get((target, source), (-1, None))

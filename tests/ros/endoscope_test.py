@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import contextlib
+import threading
+import time
 import unittest
 
 import cv2
@@ -12,6 +15,7 @@ import rostest
 import tf2_ros
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PointStamped, PoseStamped
+from saras_ros1.msg import Contact, ContactQuality
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 from support import ROOT, Newest, wait_until
 
@@ -25,6 +29,31 @@ PATIENT_S = 90.0  # pictures are drawn without a graphics card
 LEFT = "endoscope_left_optical"
 
 
+class LeftArm:
+    """A SARAS arm that publishes its pose at 50 Hz while `tip` (3,) in world is set."""
+
+    def __init__(self, place: scene.Scene) -> None:
+        self.tip: np.ndarray | None = None
+        self._base_T_world = np.linalg.inv(place.world_T("mesa_left/sbs_world"))
+        self._pose = rospy.Publisher("/mesa_left/ee_pose", PoseStamped, queue_size=5)
+        self._rcm = rospy.Publisher("/mesa_left/rcm", PointStamped, queue_size=1, latch=True)
+        trocar = PointStamped()
+        trocar.header.frame_id = "mesa_left/sbs_world"
+        trocar.point.x, trocar.point.y, trocar.point.z = place.arms["mesa_left"].rcm
+        self._rcm.publish(trocar)
+        threading.Thread(target=self._run, daemon=True).start()
+
+    def _run(self) -> None:
+        while not rospy.is_shutdown():
+            if self.tip is not None:
+                pose = self._base_T_world.copy()
+                pose[:3, :3] = pose[:3, :3] @ np.diag([1.0, -1.0, -1.0])
+                pose[:3, 3] = (self._base_T_world @ [*self.tip, 1.0])[:3]
+                with contextlib.suppress(rospy.ROSException):
+                    self._pose.publish(convert.pose_msg(pose, "mesa_left/sbs_world", rospy.Time.now()))
+            time.sleep(0.02)
+
+
 class Endoscope(unittest.TestCase):
     @classmethod
     def setUpClass(cls) -> None:
@@ -34,6 +63,9 @@ class Endoscope(unittest.TestCase):
         cls.scene = scene.load(ROOT / "config" / "scene.yaml")
         cls.images = {side: Newest(f"/endoscope/{side}/image_raw", Image) for side in ("left", "right")}
         cls.infos = {side: Newest(f"/endoscope/{side}/camera_info", CameraInfo) for side in ("left", "right")}
+        cls.arm = LeftArm(cls.scene)
+        cls.contact = {side: Newest(f"/contact/{side}", Contact) for side in ("left", "right")}
+        cls.quality = {side: Newest(f"/contact/{side}/quality", ContactQuality) for side in ("left", "right")}
         for image in cls.images.values():
             wait_until(lambda image=image: image.all, image.topic, PATIENT_S)
 
@@ -100,23 +132,8 @@ class Endoscope(unittest.TestCase):
     def test_d_an_arm_that_comes_in_is_seen_and_dents(self) -> None:
         before = self.dented()
         self.assertLess(np.abs(before), 5e-4)
-        tip = np.array([-0.02, 0.0, 0.124])  # 6 mm under the phantom's face
-        base = np.linalg.inv(self.scene.world_T("mesa_left/sbs_world"))
-        pose = rospy.Publisher("/mesa_left/ee_pose", PoseStamped, queue_size=1)
-        rcm = rospy.Publisher("/mesa_left/rcm", PointStamped, queue_size=1, latch=True)
-        trocar = PointStamped()
-        trocar.header.frame_id = "mesa_left/sbs_world"
-        trocar.point.x, trocar.point.y, trocar.point.z = self.scene.arms["mesa_left"].rcm
-        rcm.publish(trocar)
-        place = base.copy()
-        place[:3, :3] = base[:3, :3] @ np.diag([1.0, -1.0, -1.0])
-        place[:3, 3] = (base @ [*tip, 1.0])[:3]
-
-        def pressed() -> bool:
-            pose.publish(convert.pose_msg(place, "mesa_left/sbs_world", rospy.Time.now()))
-            return self.dented() > 1e-3
-
-        wait_until(pressed, "a dent where the tip presses", PATIENT_S)
+        self.arm.tip = np.array([-0.02, 0.0, 0.124])  # 6 mm under the phantom's face
+        wait_until(lambda: self.dented() > 1e-3, "a dent where the tip presses", PATIENT_S)
 
     def dented(self) -> float:
         """How far the tissue lies under the phantom's face, beside the tip, as the truth's depth says [m]."""
@@ -155,6 +172,50 @@ class Endoscope(unittest.TestCase):
         self.assertAlmostEqual(
             float(found["shortfall_hz"]), max(0.0, float(found["wanted_hz"]) - float(found["rate_hz"])), delta=0.11
         )
+
+    def await_contact(self, low_m: float, high_m: float) -> Contact:
+        """A contact of the left arm within these depths."""
+        seen = self.contact["left"]
+        seen.clear()
+        return wait_until(
+            lambda: next((m for m in seen.all if low_m < m.depth < high_m), None),
+            lambda: f"a depth in ({low_m}, {high_m}); last: {seen.message}, {self.quality['left'].message}",
+            PATIENT_S,
+        )
+
+    def test_f_a_contact_is_seen_with_its_depth_and_direction(self) -> None:
+        up = np.linalg.inv(self.scene.world_T("mesa_left/sbs_world"))[:3, 2]
+        for height in (0.136, 0.126, 0.1225, 0.14):
+            self.arm.tip = np.array([-0.02, 0.0, height])
+            message = self.await_contact(0.13 - height - 1e-3, 0.13 - height + 1e-3)
+            self.assertEqual(message.header.frame_id, "mesa_left/sbs_world")
+            normal = np.array([message.direction.x, message.direction.y, message.direction.z])
+            self.assertGreater(normal @ up, np.cos(np.radians(12.0)))
+            self.assertAlmostEqual(np.linalg.norm(normal), 1.0, places=6)
+        wait_until(lambda: any(q.reason == "" and q.confidence > 0.5 for q in self.quality["left"].all), "confidence")
+
+    def unknown(self, side: str, *words: str) -> None:
+        """Contact and quality say unknown, with a reason that has the words."""
+        quality, contact = self.quality[side], self.contact[side]
+        quality.clear(), contact.clear()
+        found = wait_until(
+            lambda: next((q for q in quality.all if all(word in q.reason for word in words)), None),
+            lambda: f"a reason with {words}; last: {quality.message}",
+            PATIENT_S,
+        )
+        self.assertEqual(found.confidence, 0.0)
+        message = wait_until(
+            lambda: next((m for m in contact.all if m.header.stamp == found.header.stamp), None), "its contact"
+        )
+        self.assertTrue(np.isnan(message.depth))
+        self.assertEqual((message.direction.x, message.direction.y, message.direction.z), (0.0, 0.0, 0.0))
+
+    def test_g_what_is_not_known_is_said(self) -> None:
+        self.unknown("right", "no pose on /mesa_right/ee_pose")
+        self.arm.tip = np.array([0.116, 0.0, 0.26])
+        self.unknown("left", "behind")
+        self.arm.tip = None
+        self.unknown("left", "no pose on /mesa_left/ee_pose within")
 
 
 if __name__ == "__main__":
