@@ -17,6 +17,7 @@ import saras
 
 #: name: (module, one line for --help)
 COMMANDS: dict[str, tuple[str, str]] = {
+    "bag": ("saras.recording.command", "look into a recording, check its completeness, mend it, report on it"),
     "board": ("saras.calibration.board_command", "make the calibration board: PDF, SVG, YAML"),
     "calibrate": ("saras.calibration.calibrate_command", "calibrate arms, endoscope and cameras, step by step"),
     "console": ("saras.console.command", "read the two handles, guard their ports, talk to the platform over UDP"),

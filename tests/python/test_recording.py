@@ -101,7 +101,7 @@ def test_unindexed_bag_names_the_cure(tmp_path):
     at = data.index(b"index_pos=") + len(b"index_pos=")
     data[at : at + 8] = bytes(8)
     (tmp_path / "b.bag").write_bytes(data)
-    with pytest.raises(saras.Error, match="rosbag reindex"):
+    with pytest.raises(saras.Error, match="saras bag repair"):
         Session.open(tmp_path / "b.bag")
 
 

@@ -66,7 +66,7 @@ class Bag:
         except Exception as error:  # rosbags raises ReaderError, AssertionError, struct.error … on damaged files
             hint = ""
             if "not indexed" in str(error):
-                hint = f" The recorder was killed before it could close the file: rosbag reindex {self.path}"
+                hint = f" The recorder was killed before it could close the file: saras bag repair {self.path}"
             elif "magic" in str(error) or "decode" in str(error):
                 hint = " This is not a ROS 1 bag (version 2.0)."
             raise Error(f"{self.path}: cannot be read as a bag: {error or type(error).__name__}.{hint}") from error
