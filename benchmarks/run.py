@@ -17,6 +17,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parent))
 import calibration
 import latency
+import overlay
 import peers
 import pipeline
 import scenario
@@ -26,7 +27,7 @@ import struct_codec
 from saras import net
 
 PYTHON_PEERS = {"teleop": ("numpy", peers.teleop), "codec": ("struct", peers.codec)}
-GROUPS = [*PYTHON_PEERS, "collision", "calibration", "latency", "stereo_contact"]
+GROUPS = [*PYTHON_PEERS, "collision", "calibration", "latency", "overlay", "stereo_contact"]
 BENCH_PYTHON = Path(__file__).parents[1] / "bench-venv" / "bin" / "python"
 TOLERANCE = 1e-9
 COLLISION_PAIRS = 100_000
@@ -106,6 +107,7 @@ def run(groups, program, soak_s=0.0):
     rows += calibration.run(BENCH_PYTHON) if "calibration" in groups else []
     if "latency" in groups:
         rows += latency.run(program.with_name("saras_latency_benchmark"), soak_s)
+    rows += overlay.run() if "overlay" in groups else []
     rows += stereo_contact.run() if "stereo_contact" in groups else []
     return rows
 
@@ -174,7 +176,7 @@ def main():
         parser.error(f"unknown group {', '.join(sorted(unknown))}; there are {', '.join(GROUPS)}")
     try:
         rows = run(arguments.groups or list(GROUPS), arguments.program, arguments.soak)
-    except (NotTheSame, calibration.NoResult) as error:
+    except (NotTheSame, calibration.NoResult, overlay.NotTheSame) as error:
         print(f"script/bench: {error}", file=sys.stderr)
         return 1
     show(rows)

@@ -10,6 +10,8 @@ namespace {
 
 constexpr int kDarkened = 110;  // of 256, behind the list of tools
 constexpr double kReferenceRows = 480.0;
+constexpr double kRim_px = 0.9;  // dark line on both sides of a coloured one
+constexpr Color kRimColor{0, 0, 0, 0};
 
 /// Also for who cannot tell colours apart, and for grey images.
 const char* mark_of(ProximityState level) noexcept {
@@ -92,19 +94,23 @@ double OverlayPainter::radius_px(double depth_m) const noexcept {
 bool OverlayPainter::draw_segment(const Vector3& a, const Vector3& b, Color color, const ImageView& image,
                                   LinePiece* first) const noexcept {
   const ProjectedLine line = eye_.project_line(a, b, scale_ * style_.greatest_line_px);
-  for (int i = 0; i < line.count; ++i) {
-    const LinePiece& piece = line.pieces[static_cast<std::size_t>(i)];
-    // In steps of half a pixel of thickness: along the image the inverse depth is linear.
-    const double from = radius_px(piece.depth_a_m), to = radius_px(piece.depth_b_m);
-    const int steps = std::clamp(static_cast<int>(std::ceil(2.0 * std::abs(to - from))), 1, 16);
-    for (int s = 0; s < steps; ++s) {
-      const double begin = static_cast<double>(s) / steps, end = static_cast<double>(s + 1) / steps;
-      const double middle = 0.5 * (begin + end);
-      const double depth = 1.0 / ((1.0 - middle) / piece.depth_a_m + middle / piece.depth_b_m);
-      draw_line(image, piece.a + begin * (piece.b - piece.a), piece.a + end * (piece.b - piece.a), radius_px(depth),
-                color);
+  const auto draw_pieces = [&](double rim_px, Color with) {
+    for (int i = 0; i < line.count; ++i) {
+      const LinePiece& piece = line.pieces[static_cast<std::size_t>(i)];
+      // In steps of half a pixel of thickness: along the image the inverse depth is linear.
+      const double from = radius_px(piece.depth_a_m), to = radius_px(piece.depth_b_m);
+      const int steps = std::clamp(static_cast<int>(std::ceil(2.0 * std::abs(to - from))), 1, 16);
+      for (int s = 0; s < steps; ++s) {
+        const double begin = static_cast<double>(s) / steps, end = static_cast<double>(s + 1) / steps;
+        const double middle = 0.5 * (begin + end);
+        const double depth = 1.0 / ((1.0 - middle) / piece.depth_a_m + middle / piece.depth_b_m);
+        draw_line(image, piece.a + begin * (piece.b - piece.a), piece.a + end * (piece.b - piece.a),
+                  radius_px(depth) + rim_px, with);
+      }
     }
-  }
+  };
+  draw_pieces(kRim_px * scale_, kRimColor);  // grey on steel would not be seen
+  draw_pieces(0.0, color);
   if (first != nullptr && line.count > 0) {
     *first = line.pieces[0];
   }

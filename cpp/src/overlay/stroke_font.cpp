@@ -138,21 +138,10 @@ StrokeFont::StrokeFont(int height_px) : height_(height_px) {
   }
 }
 
-void StrokeFont::draw(const ImageView& image, int x, int y, std::string_view text, Color color) const noexcept {
-  const PixelBytes bytes = bytes_of(color, image.format);
-  for (const char c : text) {
-    const Mask& mask = masks_[static_cast<unsigned char>(c) & 127U];
-    if (!mask.letter.empty()) {
-      draw_glyph(image, x - margin_, y - margin_, mask, bytes);
-    }
-    x += advance_;
-  }
-}
-
+template <int kChannels>
 void StrokeFont::draw_glyph(const ImageView& image, int x, int y, const Mask& mask,
                             const PixelBytes& color) const noexcept {
   const PixelBytes black = bytes_of({0, 0, 0, 0}, image.format);
-  const int n = channels(image.format);
   const int left = std::max(0, -x), right = std::min(cell_width_, image.width - x);
   const int top = std::max(0, -y), bottom = std::min(cell_height_, image.height - y);
   for (int v = top; v < bottom; ++v) {
@@ -160,13 +149,43 @@ void StrokeFont::draw_glyph(const ImageView& image, int x, int y, const Mask& ma
     const std::size_t cell = static_cast<std::size_t>(v) * static_cast<std::size_t>(cell_width_);
     for (int u = left; u < right; ++u) {
       const std::size_t at = cell + static_cast<std::size_t>(u);
-      if (mask.rim[at] == 0) {
+      const int rim = mask.rim[at], letter = mask.letter[at];
+      if (rim == 0) {
         continue;
       }
-      std::uint8_t* const pixel = row + static_cast<std::ptrdiff_t>(x + u) * n;
-      blend(pixel, n, black, mask.rim[at]);
-      blend(pixel, n, color, mask.letter[at]);
+      std::uint8_t* const pixel = row + static_cast<std::ptrdiff_t>(x + u) * kChannels;
+      if (letter == 255) {  // most pixels are wholly one or the other
+        std::copy_n(color.byte, kChannels, pixel);
+        continue;
+      }
+      if (rim == 255) {
+        std::copy_n(black.byte, kChannels, pixel);
+      } else {
+        blend(pixel, kChannels, black, rim);
+      }
+      if (letter > 0) {
+        blend(pixel, kChannels, color, letter);
+      }
     }
+  }
+}
+
+void StrokeFont::draw(const ImageView& image, int x, int y, std::string_view text, Color color) const noexcept {
+  const PixelBytes bytes = bytes_of(color, image.format);
+  const int n = channels(image.format);
+  for (const char c : text) {
+    const Mask& mask = masks_[static_cast<unsigned char>(c) & 127U];
+    if (!mask.letter.empty()) {
+      const int left = x - margin_, top = y - margin_;
+      if (n == 3) {
+        draw_glyph<3>(image, left, top, mask, bytes);
+      } else if (n == 4) {
+        draw_glyph<4>(image, left, top, mask, bytes);
+      } else {
+        draw_glyph<1>(image, left, top, mask, bytes);
+      }
+    }
+    x += advance_;
   }
 }
 

@@ -41,6 +41,7 @@ class StrokeFont {
   struct Mask {
     std::vector<std::uint8_t> letter, rim;  // coverage 0 … 255, cell by cell row
   };
+  template <int kChannels>
   void draw_glyph(const ImageView& image, int x, int y, const Mask& mask, const PixelBytes& color) const noexcept;
 
   int height_, advance_, margin_, cell_width_, cell_height_;
