@@ -1,64 +1,103 @@
 """What the surgeons see: the overlay of both eyes while all is clear, near, touching, and not known.
 
-Four tools in the scene of a stereo endoscope with distortion; the picture behind them is only a stand-in for tissue.
+Four tools in the simulated room, seen by its stereo endoscope (VTK); without VTK they are drawn on plain ground.
 
 python examples/06_overlay.py [--plot FILE.png]
 """
 
 import argparse
+import sys
+from pathlib import Path
 
 import numpy as np
 
 from saras.collision import ProximityMonitor, ProximityMonitorConfig
+from saras.kinematics import scene as scenes
 from saras.overlay import CameraConfig, OverlayPainter, OverlayTool, ToolOverlay, color_of
 
 parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
 parser.add_argument("--plot", help="write a picture here (needs matplotlib)")
 arguments = parser.parse_args()
 
-WIDTH, HEIGHT = 640, 480
-NAMES = ("MESA LEFT", "MESA RIGHT", "PSM1", "PSM2")
+SCENE = Path(__file__).resolve().parents[1] / "config" / "scene.yaml"
+NAMES = ("mesa_left", "mesa_right", "PSM1", "PSM2")
 RADII = (0.0025, 0.0025, 0.0042, 0.0042)
-#: Tips and trocars in the frame of the endoscope (z forward, y down) [m]; the second tool moves.
-TIPS = np.array([[-0.016, 0.012, 0.105], [0.022, 0.016, 0.110], [-0.028, -0.012, 0.120], [0.024, -0.024, 0.125]])
-TROCARS = np.array([[-0.09, 0.08, 0.02], [0.09, 0.08, 0.02], [-0.11, -0.03, 0.03], [0.11, -0.03, 0.03]])
-SITUATIONS = {"clear": 0.0, "warning": 0.025, "collision": 0.0365, "unknown": 0.0}  # so far to the left [m]
+#: Tips in world over the phantom [m]; then the right SARAS tool moves to the left one.
+TIPS = np.array([[-0.056, 0.022, 0.140], [-0.058, -0.026, 0.142], [-0.012, 0.014, 0.146], [-0.012, -0.040, 0.146]])
+SITUATIONS = {"clear": 0.0, "warning": 0.035, "collision": 0.0424, "unknown": 0.0}  # so far [m]
+#: world_T_left: the left eye over the phantom, its image's top towards the head.
+WORLD_T_LEFT = np.array(
+    [[0.0, -1.0, 0.0, -0.035], [-1.0, 0.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.255], [0.0, 0.0, 0.0, 1.0]]
+)
 
 
-def eyes() -> list[CameraConfig]:
-    """Left and right: 560 px focal length, barrel distortion, 5 mm apart, as calibrated."""
-    k = np.array([[560.0, 0.0, 322.0], [0.0, 558.0, 243.0], [0.0, 0.0, 1.0]])
-    p = np.column_stack([np.array([[540.0, 0.0, 320.0], [0.0, 540.0, 240.0], [0.0, 0.0, 1.0]]), np.zeros(3)])
-    common = {"width_px": WIDTH, "height_px": HEIGHT, "K": k, "distortion": [-0.22, 0.08, 5e-4, -4e-4, 0, 0, 0, 0]}
-    right = p.copy()
-    right[0, 3] = -540.0 * 0.005
-    return [CameraConfig(P=p, **common), CameraConfig(P=right, **common)]
+def trocars() -> np.ndarray:
+    """(4, 3) in world."""
+    room, found = scenes.load(SCENE), []
+    for name in NAMES:
+        if name in room.arms:
+            found.append((room.world_T(f"{name}/sbs_world") @ [*room.arms[name].rcm, 1.0])[:3])
+        else:
+            found.append(room.world_T(name)[:3, 3])
+    return np.array(found)
 
 
-def tissue() -> np.ndarray:
-    """(height, width, 3) RGB: smooth reddish noise, darker to the border."""
-    rng = np.random.default_rng(1)
-    y, x = np.mgrid[0:HEIGHT, 0:WIDTH]
-    clouds = np.zeros((HEIGHT, WIDTH))
-    for _ in range(60):
-        wave = rng.normal(0.0, 0.03, 2)
-        clouds += np.cos(wave[0] * x + wave[1] * y + rng.uniform(0.0, 6.3)) / (1.0 + 40.0 * np.linalg.norm(wave))
-    clouds = (clouds - clouds.min()) / np.ptp(clouds)
-    light = 1.0 - 0.6 * np.hypot((x - WIDTH / 2) / WIDTH, (y - HEIGHT / 2) / HEIGHT)
-    rgb = (light * (0.55 + 0.45 * clouds))[..., None] * [190, 105, 90]
-    return np.clip(rgb + rng.normal(0.0, 2.0, rgb.shape), 0, 255).astype(np.uint8)
+def camera_configs() -> list[CameraConfig]:
+    """Both eyes: 560 px focal length, barrel distortion, 5 mm apart."""
+    try:
+        from saras.sim.endoscope import stereo_camera
+    except ImportError:  # without OpenCV: a simpler pair
+        k = np.array([[560.0, 0.0, 322.0], [0.0, 558.0, 243.0], [0.0, 0.0, 1.0]])
+        plain = {"width_px": 640, "height_px": 480, "K": k, "distortion": [-0.22, 0.08, 5e-4, -4e-4, 0, 0, 0, 0]}
+        return [CameraConfig(P=np.column_stack([k, [-k[0, 0] * b, 0.0, 0.0]]), **plain) for b in (0.0, 0.0052)]
+    pair = stereo_camera()
+    return [
+        CameraConfig(
+            width_px=eye.size[0],
+            height_px=eye.size[1],
+            K=eye.intrinsics.matrix,
+            R=eye.R,
+            P=eye.P,
+            distortion=[*eye.intrinsics.distortion, 0.0, 0.0, 0.0],
+        )
+        for eye in (pair.left, pair.right)
+    ]
 
 
-def tools(left_m: float, known: bool) -> list[OverlayTool]:
-    """What colliding_regions would say of the four tools, the camera being the world."""
-    capsules = np.column_stack([TIPS, TROCARS, RADII])
-    capsules[1, 0] -= left_m
+def renderer():
+    """A function of the tips that gives both eyes' pictures (RGB)."""
+    try:
+        from saras.sim.endoscope import Room, StereoRenderer, ToolState, stereo_camera
+
+        draw = StereoRenderer(Room.load(SCENE), stereo_camera(), seed=1, noise=0.0)
+    except Exception as missing:  # no VTK, or nothing to draw on
+        print(f"on plain ground: {missing}", file=sys.stderr)
+        return lambda tips: [np.full((480, 640, 3), (150, 90, 80), np.uint8) for _ in range(2)]
+
+    def pictures(tips: np.ndarray) -> list[np.ndarray]:
+        tools = {}
+        for name, tip, trocar in zip(NAMES, tips, trocars()):
+            z = (tip - trocar) / np.linalg.norm(tip - trocar)
+            x = np.cross([0.0, 1.0, 0.0], z)
+            x /= np.linalg.norm(x)
+            pose = np.eye(4)
+            pose[:3, :3], pose[:3, 3] = np.column_stack([x, np.cross(z, x), z]), tip
+            tools[name] = ToolState(pose, trocar, jaw=0.3)
+        pair = draw.render(WORLD_T_LEFT, tools)
+        return [np.ascontiguousarray(picture[..., ::-1]) for picture in (pair.left, pair.right)]
+
+    return pictures
+
+
+def overlay_tools(tips: np.ndarray, known: bool) -> list[OverlayTool]:
+    """What colliding_regions would say of the four tools."""
+    capsules = np.column_stack([tips, trocars(), RADII])
     if not known:
-        capsules[2] = np.nan  # nobody knows where PSM1 is
+        capsules[2] = np.nan  # nobody knows where PSM1 is: no other tool is clear either
     found = ProximityMonitor(ProximityMonitorConfig(), len(NAMES)).step(capsules, dt=0.01).tools
     return [
         OverlayTool(
-            name=name,
+            name=name.upper().replace("_", " "),
             tip=capsule[:3],
             trocar=capsule[3:6],
             distance_m=tool.distance_m,
@@ -71,24 +110,33 @@ def tools(left_m: float, known: bool) -> list[OverlayTool]:
     ]
 
 
-background, painters = tissue(), [OverlayPainter(camera) for camera in eyes()]
+cameras = camera_configs()
+painters, pictures = [OverlayPainter(camera) for camera in cameras], renderer()
+rectified_T_raw = np.eye(4)
+rectified_T_raw[:3, :3] = cameras[0].R
+camera_T_world = rectified_T_raw @ np.linalg.inv(WORLD_T_LEFT)
 columns = []
 print("state       " + "".join(f"{name:>24s}" for name in NAMES))
-for situation, left_m in SITUATIONS.items():
+for situation, moved_m in SITUATIONS.items():
+    tips = TIPS.copy()
+    tips[1, 1] += moved_m
     fresh = {"distances_age_s": 0.01, "tools_age_s": 0.01, "camera_age_s": 0.01, "dt": 0.04}
-    marks = ToolOverlay().step(tools(left_m, situation != "unknown"), camera_T_world=np.eye(4), **fresh)
-    images = [background.copy() for _ in painters]
+    marks = ToolOverlay().step(overlay_tools(tips, situation != "unknown"), camera_T_world=camera_T_world, **fresh)
+    images = pictures(tips)
     for painter, image in zip(painters, images):
         painter.draw(marks, image, "rgb8")
     columns.append(np.concatenate(images))
     print(f"{situation:12s}" + "".join(f"{m.level.name:>14s} {1e3 * m.distance_m:6.1f} mm" for m in marks.tools))
     for mark in marks.tools:
-        red, green, blue, _ = color_of(mark.level)
-        assert (images[0].reshape(-1, 3) == [red, green, blue]).all(axis=1).any(), f"{mark.name} is not to be seen"
+        assert (images[0].reshape(-1, 3) == color_of(mark.level)[:3]).all(axis=1).any(), (
+            f"{mark.name} is not to be seen"
+        )
 
 if arguments.plot:
-    import matplotlib.image
+    from PIL import Image  # matplotlib brings it
 
-    gap = np.full((2 * HEIGHT, 8, 3), 255, dtype=np.uint8)
+    gap = np.full((len(columns[0]), 8, 3), 255, dtype=np.uint8)
     parts = [part for column in columns for part in (gap, column)][1:]
-    matplotlib.image.imsave(arguments.plot, np.concatenate(parts, axis=1))
+    sheet = Image.fromarray(np.concatenate(parts, axis=1))
+    sheet = sheet.resize((sheet.width * 5 // 8, sheet.height * 5 // 8), Image.Resampling.LANCZOS)
+    sheet.quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(arguments.plot, optimize=True)
