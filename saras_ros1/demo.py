@@ -8,6 +8,7 @@ no process died, bag and report are there.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import datetime
 import json
 import os
@@ -194,10 +195,11 @@ def operate(arguments: argparse.Namespace, platform: Child) -> float | None:
 
 def close_bag(out: Path, patience_s: float = 15.0) -> None:
     """Ends the recorder before the rest: nodes that stop one by one would be recorded as faults."""
-    import rosnode
+    import rospy
+    from std_srvs.srv import Trigger
 
-    recorders = [name for name in rosnode.get_node_names() if "record" in name]
-    rosnode.kill_nodes(recorders)
+    with contextlib.suppress(rospy.ServiceException):
+        rospy.ServiceProxy("/recorder/stop", Trigger)()
     end = time.monotonic() + patience_s
     while list(out.glob("*.bag.active")) and time.monotonic() < end:
         time.sleep(0.1)

@@ -16,12 +16,14 @@ TRAIL_POINTS = 150
 ORANGE, BLUE, WHITE = ColorRGBA(1.0, 0.5, 0.1, 1.0), ColorRGBA(0.2, 0.6, 1.0, 0.8), ColorRGBA(1.0, 1.0, 1.0, 1.0)
 # Unknown is grey, never green.
 GREY = ColorRGBA(0.6, 0.6, 0.6, 1.0)
+RED = ColorRGBA(1.0, 0.25, 0.2, 1.0)
+RECORDING_HEIGHT_M = 0.85
 ENGAGED = 2
 STATE_STYLE = {
     0: ("WAITING", ColorRGBA(1.0, 0.85, 0.2, 1.0)),
     1: ("READY", ColorRGBA(0.3, 0.8, 1.0, 1.0)),
     2: ("ENGAGED", ColorRGBA(0.3, 1.0, 0.4, 1.0)),
-    3: ("HOLD", ColorRGBA(1.0, 0.25, 0.2, 1.0)),
+    3: ("HOLD", RED),
 }
 
 
@@ -67,6 +69,21 @@ def trail(namespace: str, frame: str, points: list[Point], colour: ColorRGBA) ->
         return remove(namespace)
     marker = new_marker(namespace, Marker.LINE_STRIP, frame, colour, (0.0015, 0.0, 0.0))
     marker.points = points
+    return marker
+
+
+def recording(state: Any | None) -> Marker:
+    """Over the table: red when the session should be recorded and is not, grey when nobody asked for it."""
+    wanted, well = state is None or state.wanted, state is not None and state.recording
+    colour = WHITE if well else RED if wanted else GREY
+    marker = new_marker("recording", Marker.TEXT_VIEW_FACING, "world", colour, (0.0, 0.0, 0.03))
+    marker.pose.position.z = RECORDING_HEIGHT_M
+    if state is None:
+        marker.text = "NOT RECORDING\nno recorder"
+    elif well:
+        marker.text = f"recording {state.bytes / 1e6:.0f} MB"
+    else:
+        marker.text = "\n".join(["NOT RECORDING", *textwrap.wrap(state.reason, LABEL_COLUMNS)])
     return marker
 
 

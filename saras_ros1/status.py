@@ -14,7 +14,7 @@ from rich.text import Text
 
 from saras_ros1.collision_markers import NAMES as DISTANCE_STATES
 from saras_ros1.latest import Latest
-from saras_ros1.msg import ChannelState, CollisionState, TankState
+from saras_ros1.msg import ChannelState, CollisionState, RecorderState, TankState
 
 SIDES = ("left", "right")
 TANKS = ("tank_master", "tank_slave", "port_guard_left", "port_guard_right")
@@ -31,6 +31,15 @@ def state_name(state: ChannelState) -> str:
     return "E-STOP" if state.estop else STATE_NAMES.get(state.state, "?")
 
 
+def recording_words(state: Any | None) -> str:
+    """Of a RecorderState; a silent recorder records nothing."""
+    if state is None:
+        return "NOT RECORDING: no recorder"
+    if state.recording:
+        return f"recording {state.bytes / 1e6:.0f} MB" + (f" ({state.reason})" if state.reason else "")
+    return f"NOT RECORDING: {state.reason}"
+
+
 class Status:
     """Subscribes to what the table shows; needs an initialised rospy node."""
 
@@ -39,6 +48,7 @@ class Status:
         self._nodes: dict[str, tuple[float, Any]] = {}
         self.sides = {side: Latest(f"/system/{side}/state", ChannelState) for side in SIDES}
         self.tanks = {name: Latest(f"/{name}/state", TankState) for name in TANKS}
+        self.recorder = Latest("/recorder/state", RecorderState)
         self.distances = Latest("/collision/state", CollisionState)
         rospy.Subscriber("/diagnostics", DiagnosticArray, self._on_diagnostics, queue_size=50)
 
@@ -59,6 +69,9 @@ class Status:
         if title:
             outer.add_row(Text(title, style="bold"))
         outer.add_row(grid)
+        recorder = self.recorder.value()
+        style = "green" if recorder is not None and recorder.recording else "bold white on red"
+        outer.add_row(Text(recording_words(recorder), style=style))
         outer.add_row(self._nodes_table())
         return outer
 
@@ -72,7 +85,7 @@ class Status:
         for name, latest in self.tanks.items():
             tank = latest.value()
             parts.append(f"{name} " + ("unknown" if tank is None else f"{tank.energy_J:.3f} J"))
-        return " | ".join([*parts, self._distance_words()])
+        return " | ".join([*parts, self._distance_words(), recording_words(self.recorder.value())])
 
     def _distance_words(self) -> str:
         state = self.distances.value()

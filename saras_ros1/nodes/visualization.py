@@ -15,7 +15,7 @@ from saras.kinematics import mesa, simball
 from saras_ros1 import convert, markers
 from saras_ros1.channel import SIDES, base_frame
 from saras_ros1.latest import Latest
-from saras_ros1.msg import ChannelState, TankState
+from saras_ros1.msg import ChannelState, RecorderState, TankState
 from saras_ros1.node import Node, run
 
 LABEL_HEIGHT_M = 0.33
@@ -103,6 +103,7 @@ class Visualization(Node):
         markers_hz = self.params.number("markers_hz", 1.0, 60.0)
         self.params.finish()
         self.tanks = {name: Latest(f"/tank_{name}/state", TankState) for name in ("master", "slave")}
+        self.recorder = Latest("/recorder/state", RecorderState)
         self.sides = [Side(self, side) for side in SIDES]
         self.markers = self.output("/saras/markers", MarkerArray)
         self.every(1.0 / joints_hz, self._publish_joints)
@@ -114,7 +115,8 @@ class Visualization(Node):
 
     def _publish_markers(self) -> None:
         tanks = {name: latest.value() for name, latest in self.tanks.items()}
-        self.markers.publish(MarkerArray([marker for side in self.sides for marker in side.markers(tanks)]))
+        shown = [marker for side in self.sides for marker in side.markers(tanks)]
+        self.markers.publish(MarkerArray([*shown, markers.recording(self.recorder.value())]))
 
 
 def main() -> int:

@@ -40,6 +40,7 @@ ELSE = {
     "dvrk_sim": "distances to the da Vinci unknown: motion goes on",
     "frames": "its frames are latched: motion goes on, no new node gets them",
     "graph_watch": "nobody watches the links and ports: motion goes on",
+    "recorder": "the bag is closed, NOT RECORDING is shown: motion goes on",
     "tool_command": "the instrument stays as it is: motion goes on",
     "visualization": "no markers: motion goes on",
 }
