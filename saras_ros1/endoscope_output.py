@@ -10,7 +10,6 @@ from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 from saras.calibration.camera_info import Eye
 from saras_ros1.camera_images import camera_info_msg, image_msg
 from saras_ros1.endoscope_frames import OPTICAL
-from saras_ros1.node import Node
 
 # A viewer that is slow gets the newest picture, not the last twenty.
 QUEUE = 2
@@ -19,9 +18,10 @@ QUEUE = 2
 class EyeOutput:
     """Publishers of one side, "left" or "right"; images are built only for readers."""
 
-    def __init__(self, node: Node, side: str, jpeg_quality: int) -> None:
+    def __init__(self, side: str, jpeg_quality: int, topics: str = "/endoscope") -> None:
+        """topics: what the names of its topics begin with."""
         self.side, self.frame, self._quality = side, OPTICAL[side], jpeg_quality
-        base = f"/endoscope/{side}"
+        base = f"{topics}/{side}"
         self._image = rospy.Publisher(f"{base}/image_raw", Image, queue_size=QUEUE)
         self._jpeg = rospy.Publisher(f"{base}/image_raw/compressed", CompressedImage, queue_size=QUEUE)
         self._info = rospy.Publisher(f"{base}/camera_info", CameraInfo, queue_size=QUEUE)

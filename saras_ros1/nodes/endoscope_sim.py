@@ -46,7 +46,7 @@ class EndoscopeSim(Node):
         check_drawing()
         self.frames.place_right(self.camera.right_T_left)
         self.tools = SeenTools(self, self.live)
-        self.eyes = [EyeOutput(self, side, quality) for side in SIDES]
+        self.eyes = [EyeOutput(side, quality) for side in SIDES]
         self.truth = [
             [rospy.Publisher(f"/endoscope/{side}/truth/{kind}", Image, queue_size=2) for kind in ("depth", "labels")]
             for side in SIDES
