@@ -32,6 +32,7 @@ from saras_ros1.console_link import check_addresses
 from saras_ros1.params import Params
 
 TANKS = ("tank_master", "tank_slave")
+FORCE_TOPICS = {"arm": "/mesa_{s}/measured_cf", "contact": "/contact_force/{s}/wrench"}
 
 
 @dataclass
@@ -54,6 +55,7 @@ class Settings:
     operator: str
     publishing: Publishing
     frames_wait_s: float
+    force_topic: str  # with {s} for the side
     wants_nearness: bool
 
 
@@ -66,7 +68,7 @@ def read(own: Params) -> Settings:
     session = time.time_ns()
     pipeline = PipelineConfig(session=session, channel_timeout_s=STATE_TIMEOUT_S)
     frames_wait_s = _read_mappings(pipeline)
-    _read_transparency(pipeline)
+    force_topic = _read_transparency(pipeline)
     publishing = _read_tanks(pipeline)
     _read_integrators(pipeline, publishing)
     console, keys, operator = _read_console(pipeline, publishing, session)
@@ -87,6 +89,7 @@ def read(own: Params) -> Settings:
         operator=operator,
         publishing=publishing,
         frames_wait_s=frames_wait_s,
+        force_topic=force_topic,
         wants_nearness=pipeline.proximity_force or pipeline.proximity_slowdown,
     )
 
@@ -109,13 +112,12 @@ def _read_mappings(pipeline: PipelineConfig) -> float:
     return frames_wait_s
 
 
-def _read_transparency(pipeline: PipelineConfig) -> None:
+def _read_transparency(pipeline: PipelineConfig) -> str:
     params = _section("transparency")
     params.number("period_s", 0.001, 0.1)
     pipeline.handle_timeout_s = min(pipeline.handle_timeout_s, params.number("master_timeout_s", 0.005, 1.0))
     pipeline.arm_timeout_s = params.number("arm_timeout_s", 0.005, 1.0)
-    if params.text("force_source", ("arm", "contact")) != "arm":
-        raise ConfigError("/transparency/force_source = contact: hosting realtime takes the arm's wrench only")
+    force_source = params.text("force_source", ("arm", "contact"))
     pipeline.transparency = params.build(TransparencyConfig, "law")
     pipeline.slave_twist = params.build(TwistEstimatorConfig, "slave_twist")
     proximity = params.section("proximity_force")
@@ -123,6 +125,7 @@ def _read_transparency(pipeline: PipelineConfig) -> None:
     pipeline.proximity_force = proximity.flag("enabled")
     pipeline.repulsion = proximity.build(RepulsiveForceConfig, "law")
     params.finish()
+    return FORCE_TOPICS[force_source]
 
 
 def _read_tanks(pipeline: PipelineConfig) -> Publishing:

@@ -68,7 +68,7 @@ class RealtimeHost(Node):
         self._held = False
         self._records = 0
         for side in SIDES:
-            self._subscribe(side)
+            self._subscribe(side, settings.force_topic)
         rospy.Service("~write_record", Trigger, self._on_write_record)
         rospy.on_shutdown(self.host.stop)
         self.host.start()
@@ -110,11 +110,11 @@ class RealtimeHost(Node):
             mapping = getattr(pipeline, f"{side}_mapping")
             mapping.base_T_console, mapping.touch_T_console = frames.lookup(*base), frames.lookup(*touch)
 
-    def _subscribe(self, side: str) -> None:
+    def _subscribe(self, side: str, force_topic: str) -> None:
         frame, host = base_frame(side), self.host
         pose = self.input(f"/mesa_{side}/ee_pose", PoseStamped, convert.in_frame(frame, convert.pose))
         pose.listeners.append(lambda source: host.set_arm_pose(side, source.value, source.stamp_ns))
-        wrench = self.input(f"/mesa_{side}/measured_cf", WrenchStamped, convert.in_frame(frame, convert.wrench))
+        wrench = self.input(force_topic.format(s=side), WrenchStamped, convert.in_frame(frame, convert.wrench))
         wrench.listeners.append(lambda source: host.set_arm_wrench(side, source.value))
         rcm = self.input(f"/mesa_{side}/rcm", PointStamped, convert.in_frame(frame, convert.point))
         rcm.listeners.append(lambda source: host.set_arm_rcm(side, source.value))
