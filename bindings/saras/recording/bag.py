@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import mmap
+import struct
 from collections.abc import Callable
 from dataclasses import dataclass
 from operator import attrgetter
@@ -12,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from saras import Error
+from saras.recording import decode
 
 Floats = NDArray[np.float64]
 
@@ -76,6 +79,8 @@ class Bag:
         self.start_ns: int = self._reader.start_time
         self.duration_s: float = self._reader.duration * 1e-9
         self.counts: dict[str, int] = {name: info.msgcount for name, info in self._reader.topics.items()}
+        with self.path.open("rb") as file:
+            self._bytes = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
         self._stores = [get_typestore(Stores.EMPTY)]
         self._cache: dict[str, Topic | None] = {}
 
@@ -90,6 +95,25 @@ class Bag:
             self._cache[name] = self._read(name)
         return self._cache[name]
 
+    def heads(self, name: str) -> tuple[Floats, Floats] | None:
+        """(n,) stamps and receptions [s] of a topic whose messages begin with a header; the rest is not decoded."""
+        from saras.recording.survey import starts_with_header
+
+        connections = [connection for connection in self._reader.connections if connection.topic == name]
+        if not connections or self.counts.get(name, 0) == 0:
+            return None
+        if not all(starts_with_header(connection.msgdef.data) for connection in connections):
+            raise Error(f"{self.path}: {name} ({connections[0].msgtype}) has no header, so its stamps are not known")
+        rows = []
+        try:
+            for _, time_ns, raw in self._reader.messages(connections):
+                _, sec, nanosec = struct.unpack_from("<III", raw)
+                rows.append((sec * 1_000_000_000 + nanosec - self.start_ns, time_ns - self.start_ns))
+        except Exception as error:
+            raise Error(f"{self.path}: {name}: damaged after {len(rows)} messages: {error}") from error
+        times = np.array(rows, dtype=np.int64) * 1e-9
+        return times[:, 0], times[:, 1]
+
     def _read(self, name: str) -> Topic | None:
         connections = [connection for connection in self._reader.connections if connection.topic == name]
         if not connections or self.counts.get(name, 0) == 0:
@@ -98,18 +122,32 @@ class Bag:
         if len(types) > 1:
             raise Error(f"{self.path}: {name} was recorded with several types: {', '.join(sorted(types))}")
         msgtype = connections[0].msgtype
+        try:
+            store = self._store_for(connections[0])
+            received_ns, columns = self._columns(connections, store, msgtype)
+        except Exception as error:
+            raise Error(f"{self.path}: {name}: damaged: {error}") from error
+        t_received = (received_ns - self.start_ns) * 1e-9
+        return Topic(name, msgtype.replace("/msg/", "/"), self._stamps(columns, t_received), t_received, columns)
+
+    def _columns(
+        self, connections: list[Any], store: Any, msgtype: str
+    ) -> tuple[NDArray[np.int64], dict[str, NDArray[Any]]]:
+        """Times of reception and a column a field; all at once where the messages repeat one layout."""
+        try:
+            received_ns, groups = decode.messages_by_length(self._bytes, self._reader, connections)
+            return received_ns, decode.columns(groups, store, msgtype)
+        except decode.Irregular:
+            pass
         received: list[int] = []
         messages: list[Any] = []
         try:
-            store = self._store_for(connections[0])
             for _, time_ns, raw in self._reader.messages(connections):
                 received.append(time_ns)
                 messages.append(store.deserialize_ros1(raw, msgtype))
         except Exception as error:
-            raise Error(f"{self.path}: {name}: damaged after {len(messages)} messages: {error}") from error
-        t_received = (np.array(received, dtype=np.int64) - self.start_ns) * 1e-9
-        columns = _columns(messages, store, msgtype)
-        return Topic(name, msgtype.replace("/msg/", "/"), self._stamps(columns, t_received), t_received, columns)
+            raise Error(f"after {len(messages)} messages: {error}") from error
+        return np.array(received, dtype=np.int64), _columns(messages, store, msgtype)
 
     def _stamps(self, columns: dict[str, NDArray[Any]], t_received: Floats) -> Floats:
         if "header.stamp.sec" not in columns:
