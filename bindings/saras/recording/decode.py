@@ -2,7 +2,7 @@
 
 Nearly all topics of a platform repeat one layout: their text has the same length in each message. Then a field stands
 at the same offset in all messages, and a column is a slice of the matrix of their bytes. Messages are grouped by
-length, and within a group all length prefixes are compared; what does not repeat is left to rosbags, message by message.
+length, and within a group all length prefixes are compared; what does not repeat is left to rosbags.
 """
 
 from __future__ import annotations

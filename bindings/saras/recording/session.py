@@ -8,7 +8,7 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 
-from saras.recording.bag import Bag, Topic
+from saras.recording.bag import Bag, Floats, Topic
 from saras.recording.collision import ToolDistances, tool_distances
 from saras.recording.series import (
     JointSeries,
@@ -126,6 +126,7 @@ class Session:
         self._bag = bag
         self.path: Path = bag.path
         self.duration_s: float = bag.duration_s
+        self.start_ns: int = bag.start_ns  #: unix time of the first message
         self.start = datetime.fromtimestamp(bag.start_ns * 1e-9, tz=timezone.utc)
 
     @classmethod
@@ -151,6 +152,10 @@ class Session:
     def topic(self, name: str) -> Topic | None:
         """Any topic as columns, or None when no message of it was recorded."""
         return self._bag.topic(name)
+
+    def heads(self, name: str) -> tuple[Floats, Floats] | None:
+        """(n,) stamps and receptions [s] of a topic of large messages (pictures); None when none was recorded."""
+        return self._bag.heads(name)
 
     def arm(self, name: str) -> Arm:
         """``mesa_left`` or ``mesa_right``."""
