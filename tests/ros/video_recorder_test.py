@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import subprocess
 import tempfile
 import threading
 import time
@@ -72,6 +73,16 @@ class VideoRecorder(unittest.TestCase):
         rospy.sleep(seconds)
         self.assertTrue(rospy.ServiceProxy("/recorder/stop", Trigger)().success)
         rospy.sleep(1.0)  # the videos are closed
+
+    def test_0_pairs_for_a_calibration_are_saved(self):
+        out = Path(tempfile.mkdtemp()) / "views"
+        command = ["rosrun", "saras_ros1", "save_views", "--out", str(out), "--count", "3", "--every-s", "0.1"]
+        done = subprocess.run(command, text=True, capture_output=True, check=False, timeout=60.0)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for number in range(3):
+            left, right = (cv2.imread(str(out / side / f"{number:03d}.png"), cv2.IMREAD_GRAYSCALE) for side in SIDES)
+            np.testing.assert_array_equal(left, right)
+        self.assertEqual(subprocess.run(command, capture_output=True, check=False, timeout=60.0).returncode, 2)
 
     def test_1_every_picture_is_there_with_its_stamp(self):
         path = Path(tempfile.mkdtemp()) / "session.bag"

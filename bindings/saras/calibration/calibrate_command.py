@@ -4,6 +4,7 @@ saras calibrate simulation --scene config/scene.yaml           practise in the s
 saras calibrate simulation --scene config/scene.yaml --yes     the same without prompts
 saras calibrate hand-eye gripper.csv target.csv                from two recorded streams (t, x, y, z, qx, qy, qz, qw)
 saras calibrate camera left/ right/ --pattern checkerboard --columns 9 --rows 6 --square-m 0.007 --out camera/
+saras calibrate camera --bag views.bag --columns 9 --rows 6 --square-m 0.007      the same from recorded images
 saras calibrate check calibration.yaml                         read a file as the platform does, and show it
 
 With real arms: roslaunch saras_ros1 calibration.launch, and its services (docs/calibration.md).
@@ -23,7 +24,6 @@ from saras.calibration.calibration_file import Calibration
 
 #: Issue: all frames this near to the truth with realistic noise.
 BOUND_M, BOUND_DEG = 1e-3, 0.5
-PICTURES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -51,9 +51,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     streams.add_argument("camera", type=Path, help="camera_T_target over time")
     streams.add_argument("--camera-in-target", action="store_true", help="the camera's file holds target_T_camera")
     streams.add_argument("--parts", type=int, default=1, help="also of so many disjoint parts, compared")
-    camera = actions.add_parser("camera", help="stereo camera from two folders of pictures, without a window")
-    camera.add_argument("left", type=Path, help="folder of pictures; left and right are paired by their sorted names")
-    camera.add_argument("right", type=Path)
+    camera = actions.add_parser("camera", help="stereo camera from two folders of pictures or a bag, without a window")
+    camera.add_argument(
+        "left", type=Path, nargs="?", help="folder of pictures; left and right are paired by their sorted names"
+    )
+    camera.add_argument("right", type=Path, nargs="?")
+    camera.add_argument("--bag", type=Path, help="a bag with both eyes' images, instead of the folders")
+    camera.add_argument("--left-topic", default="/endoscope/left/image_raw", help="(%(default)s)")
+    camera.add_argument("--right-topic", default="/endoscope/right/image_raw", help="(%(default)s)")
+    camera.add_argument("--every-s", type=float, default=0.5, help="between two views of the bag (%(default)s)")
     camera.add_argument("--pattern", choices=("checkerboard", "charuco"), default="checkerboard")
     camera.add_argument("--columns", type=int, required=True, help="inner corners (charuco: squares) along a row")
     camera.add_argument("--rows", type=int, required=True)
@@ -147,9 +153,8 @@ def _hand_eye(arguments: argparse.Namespace) -> int:
 
 
 def _camera(arguments: argparse.Namespace) -> int:
-    import cv2
-
     from saras.calibration.stereo import Charuco, Checkerboard, stereo
+    from saras.calibration.stereo_pictures import from_bag, from_folders
 
     if arguments.pattern == "charuco" and arguments.marker_m is None:
         raise ConfigError("--marker-m: missing; a charuco needs it")
@@ -158,15 +163,13 @@ def _camera(arguments: argparse.Namespace) -> int:
         if arguments.pattern == "charuco"
         else Checkerboard(arguments.columns, arguments.rows, arguments.square_m)
     )
-    images, names = [], []
-    for folder in (arguments.left, arguments.right):
-        paths = sorted(path for path in folder.iterdir() if path.suffix.lower() in PICTURES)
-        names.append([path.name for path in paths])
-        images.append([cv2.imread(str(path), cv2.IMREAD_GRAYSCALE) for path in paths])
-    broken = [name for side, all_names in zip(images, names) for name, image in zip(all_names, side) if image is None]
-    if broken:
-        raise ConfigError(f"{broken[0]}: cannot be read as a picture")
-    found = stereo(images[0], images[1], pattern, names[0])
+    if arguments.bag is not None:
+        pairs = from_bag(arguments.bag, arguments.left_topic, arguments.right_topic, arguments.every_s)
+    elif arguments.left is not None and arguments.right is not None:
+        pairs = from_folders(arguments.left, arguments.right)
+    else:
+        raise ConfigError("left, right: two folders of pictures, or --bag FILE")
+    found = stereo(pairs.left, pairs.right, pattern, pairs.names)
     for name, why in found.refused.items():
         print(f"not used  {name}: {why}")
     print(f"views used {len(found.used)}; coverage left {found.coverage[0]:.0%}, right {found.coverage[1]:.0%}")
