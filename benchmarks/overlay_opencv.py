@@ -8,14 +8,15 @@ import numpy as np
 from saras.overlay import CameraConfig, ToolMark, color_of
 
 PIECES = 12  # of a shaft, for its thickness and the lens
-LINE_M, THINNEST_PX, THICKEST_PX, RULER_M, TICKS, NEAR_M = 0.0012, 1.5, 9.0, 0.01, 5, 0.005
+LINE_M, THINNEST_PX, THICKEST_PX, RULER_M, TICKS, NEAR_M, RIM_PX = 0.0012, 1.5, 9.0, 0.01, 5, 0.005, 0.9
 SHIFT = 4  # OpenCV draws on fractions of a pixel
 
 
 class Painter:
-    """Of one eye; bgr8."""
+    """Of one eye; bgr8. letters: False leaves them out, to compare the lines."""
 
-    def __init__(self, camera: CameraConfig) -> None:
+    def __init__(self, camera: CameraConfig, letters: bool = True) -> None:
+        self.letters = letters
         p = np.asarray(camera.P)
         self.shift = np.linalg.solve(p[:, :3], p[:, 3])
         self.turn = np.eye(3) if camera.rectified else np.asarray(camera.R).T
@@ -61,13 +62,16 @@ class Painter:
         inverse = (1.0 - share) / za + share / zb  # even steps in the image
         points = ends[0] + (share / zb / inverse)[:, None] * (ends[1] - ends[0])
         pixels = self.pixels(points)
-        for i in range(PIECES):
-            depth = 2.0 / (inverse[i] + inverse[i + 1])
-            self.line(image, pixels[i], pixels[i + 1], self.radius(depth), color)
+        for rim, with_color in ((RIM_PX * self.scale, (0, 0, 0)), (0.0, color)):
+            for i in range(PIECES):
+                depth = 2.0 / (inverse[i] + inverse[i + 1])
+                self.line(image, pixels[i], pixels[i + 1], self.radius(depth) + rim, with_color)
         return pixels
 
     def text(self, image: np.ndarray, text: str, x: float, y: float, color: tuple) -> None:
         """Lower left corner at x, y; with a dark rim."""
+        if not self.letters:
+            return
         at = (int(x), int(y))
         thick = max(1, round(0.17 * self.text_px))
         cv2.putText(image, text, at, cv2.FONT_HERSHEY_SIMPLEX, self.font, (0, 0, 0), thick + 4, cv2.LINE_AA)

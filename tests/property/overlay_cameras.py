@@ -78,8 +78,11 @@ def in_image(pixels: np.ndarray, config: CameraConfig, margin_px: float = 0.0) -
     return np.isfinite(pixels).all(axis=1) & (pixels >= low).all(axis=1) & (pixels <= high).all(axis=1)
 
 
-def before_the_fold(eye: Eye, points: np.ndarray) -> np.ndarray:
-    """(n,) whether the radial part of the lens model still grows there, found on a dense ladder of radii."""
+def before_the_fold(eye: Eye, points: np.ndarray, slack: float = 0.0) -> np.ndarray:
+    """(n,) whether the radial part of the lens model still grows there, found on a dense ladder of radii.
+
+    slack: so much of the radius (x/z) before the fold counts as beyond it.
+    """
     if eye.rectified:
         return np.ones(len(points), dtype=bool)
     d = np.asarray(eye.config.distortion)
@@ -89,11 +92,11 @@ def before_the_fold(eye: Eye, points: np.ndarray) -> np.ndarray:
     falls = np.flatnonzero(~(np.diff(bent) > 0.0))
     limit = r[falls[0]] if len(falls) else r[-1]
     in_eye = eye.raw_frame(points)
-    return np.hypot(in_eye[:, 0], in_eye[:, 1]) < limit * in_eye[:, 2]
+    return np.hypot(in_eye[:, 0], in_eye[:, 1]) < (limit - slack) * in_eye[:, 2]
 
 
 def points_in_view(rng: np.random.Generator, eye: Eye, count: int) -> np.ndarray:
-    """(m, 3) of the rectified left frame that OpenCV puts into the image, before the fold of the lens model."""
+    """(m, 3) of the rectified left frame that OpenCV puts into the image, well before the fold of the lens model."""
     k = np.asarray(eye.config.P if eye.rectified else eye.config.K)
     depth = rng.uniform(0.02, 0.3, count)
     size = np.array([eye.config.width_px, eye.config.height_px])
@@ -102,5 +105,5 @@ def points_in_view(rng: np.random.Generator, eye: Eye, count: int) -> np.ndarray
     p = np.asarray(eye.config.P)
     rectified = in_eye if eye.rectified else in_eye @ np.asarray(eye.config.R).T
     points = rectified - np.linalg.solve(p[:, :3], p[:, 3])
-    seen = in_image(eye.opencv(points), eye.config) & before_the_fold(eye, points)
+    seen = in_image(eye.opencv(points), eye.config) & before_the_fold(eye, points, 2e-3)
     return points[seen]

@@ -32,3 +32,12 @@ def test_struct_codec_refuses_a_flipped_bit():
     data[40] ^= 1
     with pytest.raises(ValueError, match="checksum"):
         struct_codec.decode_up(bytes(data))
+
+
+@pytest.mark.parametrize("rectified", [True, False])
+def test_opencv_draws_our_overlay(rectified):
+    pytest.importorskip("cv2")
+    import overlay
+
+    for frame in overlay.frames()[:10]:
+        assert overlay.same_lines(frame, rectified) >= overlay.LEAST_SHARE

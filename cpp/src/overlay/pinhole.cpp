@@ -16,6 +16,7 @@ constexpr int kMostPixels = 16384;
 constexpr int kBends = 6;              // halvings of a bent line: 64 pieces
 constexpr double kFieldMargin = 1.05;  // of the field's radius beyond the image's corners
 constexpr double kWidestField = 20.0;  // x/z; 87 degrees off the axis
+constexpr double kFieldStep = 1e-3;    // in which the fold is looked for
 
 std::string text(double value) { return std::to_string(value); }
 
@@ -104,8 +105,8 @@ Pixel PinholeEye::pixel(const Normalised& straight) const noexcept {
 // A polynomial lens model grows up to some radius and then folds back: what is far outside would reappear inside the
 // image. The field ends there, or a little beyond the image's corners, whichever is nearer.
 void PinholeEye::find_field() {
-  field_radius_ = std::numeric_limits<double>::infinity();
   if (!bends_) {
+    field_radius_ = std::numeric_limits<double>::infinity();
     return;
   }
   const double w = config_.width_px, h = config_.height_px;
@@ -116,28 +117,17 @@ void PinholeEye::find_field() {
     }
   }
   const double tangential = 4.0 * std::hypot(config_.distortion[2], config_.distortion[3]);
-  double before = 0.0;
-  constexpr double kStep = 1e-3;
-  for (double r = kStep; r <= kWidestField; r += kStep) {
-    const double bent = r * radial(r * r);
+  double before = 0.0, last_wanted = kWidestField;
+  for (int i = 1; i * kFieldStep <= last_wanted; ++i) {
+    const double r = i * kFieldStep, bent = r * radial(r * r);
     if (!(bent > before)) {
-      field_radius_ = r - kStep;
-      return;
+      break;  // the fold
     }
     before = bent;
-    if (bent - tangential * r * r > wanted) {
-      field_radius_ = kFieldMargin * r;
-      break;
-    }
     field_radius_ = r;
-  }
-  // The margin must not reach the fold either.
-  for (double r = field_radius_ / kFieldMargin; r <= field_radius_; r += kStep) {
-    if (r * radial(r * r) < before) {
-      field_radius_ = r - kStep;
-      return;
+    if (last_wanted == kWidestField && bent - tangential * r * r > wanted) {
+      last_wanted = std::min(kFieldMargin * r, kWidestField);
     }
-    before = r * radial(r * r);
   }
 }
 

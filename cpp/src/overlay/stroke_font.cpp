@@ -62,6 +62,12 @@ constexpr Glyph kGlyphs[] = {
 };
 constexpr double kRows = 6.0;
 
+/// Of a letter in the table; beyond ASCII something that is no letter.
+constexpr std::size_t place(char c) noexcept {
+  const auto code = static_cast<unsigned char>(c);
+  return code < 128 ? code : 0;
+}
+
 }  // namespace
 
 ShortText& ShortText::operator+=(std::string_view text) noexcept {
@@ -109,7 +115,7 @@ StrokeFont::StrokeFont(int height_px) : height_(height_px) {
   cell_height_ = height_px + 2 * margin_ + 1;
   const std::size_t size = static_cast<std::size_t>(cell_width_) * static_cast<std::size_t>(cell_height_);
   for (const Glyph& glyph : kGlyphs) {
-    Mask& mask = masks_[static_cast<std::size_t>(glyph.letter)];
+    Mask& mask = masks_[place(glyph.letter)];
     const auto trace = [&](std::vector<std::uint8_t>& cell, double radius_px) {
       cell.assign(size, 0);
       const ImageView view{cell.data(), cell_width_, cell_height_, static_cast<std::size_t>(cell_width_),
@@ -133,7 +139,7 @@ StrokeFont::StrokeFont(int height_px) : height_(height_px) {
   }
   for (char c = 'a'; c <= 'z'; ++c) {
     if (c != 'm') {
-      masks_[static_cast<std::size_t>(c)] = masks_[static_cast<std::size_t>(c - 'a' + 'A')];
+      masks_[place(c)] = masks_[place(c) - place('a') + place('A')];
     }
   }
 }
@@ -174,7 +180,7 @@ void StrokeFont::draw(const ImageView& image, int x, int y, std::string_view tex
   const PixelBytes bytes = bytes_of(color, image.format);
   const int n = channels(image.format);
   for (const char c : text) {
-    const Mask& mask = masks_[static_cast<unsigned char>(c) & 127U];
+    const Mask& mask = masks_[place(c)];
     if (!mask.letter.empty()) {
       const int left = x - margin_, top = y - margin_;
       if (n == 3) {

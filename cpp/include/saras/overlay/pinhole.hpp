@@ -37,7 +37,7 @@ struct LinePiece {
   double depth_a_m = 0.0;  ///< along the eye's optical axis
   double depth_b_m = 0.0;
 };
-inline constexpr double kStraightTolerance_px = 0.05;
+inline constexpr double kStraightTolerance_px = 0.1;
 inline constexpr int kMaxLinePieces = 64;
 
 struct ProjectedLine {
