@@ -82,7 +82,7 @@ def test_known_points_are_where_opencv_projects_them(scale: float) -> None:
     errors, places = [], []
     for seed in range(12):
         rng = np.random.default_rng(seed)
-        world_T_left = above(WORLD_T_BOARD, rng.uniform(0.11, 0.14), rng.uniform(-0.2, 0.2, 3))
+        world_T_left = above(WORLD_T_BOARD, rng.uniform(0.075, 0.095), rng.uniform(-0.2, 0.2, 3))
         pair = renderer.render(world_T_left, {})
         left_T_board = np.linalg.inv(world_T_left) @ WORLD_T_BOARD
         for image, eye, pose in (
@@ -103,7 +103,7 @@ def test_known_points_are_where_opencv_projects_them(scale: float) -> None:
 def test_pictures_are_those_of_a_ray_caster(board_renderer: StereoRenderer) -> None:
     """Grey levels differ by no more than the edges of black on white do when they are sampled otherwise."""
     camera, pattern = board_renderer.camera, BoardPattern(board_renderer.room.board)
-    world_T_left = above(WORLD_T_BOARD, 0.18, np.array([0.1, -0.05, 0.1]))
+    world_T_left = above(WORLD_T_BOARD, 0.14, np.array([0.1, -0.05, 0.1]))
     pair = board_renderer.render(world_T_left, {})
     left_T_board = np.linalg.inv(world_T_left) @ WORLD_T_BOARD
     for image, eye, pose in (
@@ -265,3 +265,16 @@ def test_a_spoilt_camera_info_is_refused_by_name(tmp_path: Path, old: str, new: 
         return
     with pytest.raises(ConfigError, match=word):
         Eye.load(path)
+
+
+def test_bones_show_where_no_tissue_covers_them(renderer: StereoRenderer) -> None:
+    room = renderer.room
+    bone = room.world_T_bones @ [0.45 * room.bones_size_m[0], 0.0, 0.5 * room.bones_size_m[2], 1.0]
+    world_T_left = np.eye(4)
+    world_T_left[:3, :3] = np.diag([1.0, -1.0, -1.0])
+    world_T_left[:3, 3] = bone[:3] + np.array([0.0, 0.0, 0.12])
+    renderer.render(world_T_left, {})
+    truth = renderer.truth()
+    u, v = project(renderer.camera.left, np.linalg.inv(world_T_left), bone[None, :3])[0].round().astype(int)
+    assert truth.left_labels[v, u] == Label.BONE
+    assert truth.left_depth[v, u] == pytest.approx(0.12, abs=1e-4)

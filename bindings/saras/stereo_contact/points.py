@@ -21,6 +21,7 @@ BEYOND_M = 0.10  # so much of a shaft behind its trocar is masked, too: who know
 #: Of the matches at half size every third is refined at full size.
 STRIDE_PX = 3
 WINDOW_PX = 17
+LEAST_TEXTURE = 1e-4  # as calcOpticalFlowPyrLK measures it
 WRONG_ROW_PX = 0.8  # a match in another row is none: these pictures are rectified
 MOST_CHANGE_PX = 3.0
 
@@ -63,7 +64,7 @@ class StereoPoints:
             preFilterCap=31,
             mode=cv2.STEREO_SGBM_MODE_SGBM_3WAY,
         )
-        self._first = first
+        self._first, self._border = first, max(0, first + count)
         self._chosen = np.zeros((self.size[1], self.size[0]), dtype=bool)
         self._chosen[::STRIDE_PX, ::STRIDE_PX] = True
         self._reach_px = config.block_px // 2 + 1
@@ -83,7 +84,9 @@ class StereoPoints:
             for picture, maps in zip((left, right), self._maps)
         ]
         grey = [cv2.resize(picture, self.size, interpolation=cv2.INTER_AREA) for picture in full]
-        disparity = self._matcher.compute(grey[0], grey[1]).astype(np.float32) / 16.0
+        # SGBM leaves out what may have its match beyond the border: it gets a border of that width.
+        wide = [cv2.copyMakeBorder(picture, 0, 0, self._border, 0, cv2.BORDER_REPLICATE) for picture in grey]
+        disparity = self._matcher.compute(wide[0], wide[1])[:, self._border :].astype(np.float32) / 16.0
         good = (disparity >= self._first) & self._chosen
         glare = cv2.dilate((grey[0] > GLARE).astype(np.uint8), np.ones((5, 5), np.uint8)) > 0
         shafts = list(capsules)
@@ -91,8 +94,10 @@ class StereoPoints:
         good &= ~glare & ~hidden_left
         rows, columns = np.nonzero(good)
         found = disparity[rows, columns]
-        there = np.clip(np.round(columns - found).astype(int), 0, self.size[0] - 1)
-        seen = ~hidden_right[rows, there]  # else the match lies on a tool, or just beside one
+        there = np.round(columns - found).astype(int)
+        inside = (there >= 0) & (there < self.size[0])
+        # A match on a tool, or just beside one, is none.
+        seen = inside & ~hidden_right[rows, np.clip(there, 0, self.size[0] - 1)]
         at = np.column_stack([columns[seen], rows[seen]]).astype(np.float32)
         places, found = self._refined(full, 2.0 * at + 0.5, 2.0 * found[seen])
         p = self.left.P
@@ -114,8 +119,9 @@ class StereoPoints:
         guess[:, 0] -= rough
         criteria = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 12, 0.01)
         window = (WINDOW_PX, WINDOW_PX)
+        flags = cv2.OPTFLOW_USE_INITIAL_FLOW
         there, status, _ = cv2.calcOpticalFlowPyrLK(
-            full[0], full[1], at, guess.copy(), None, None, window, 0, criteria, cv2.OPTFLOW_USE_INITIAL_FLOW, 1e-3
+            full[0], full[1], at, guess.copy(), None, None, window, 0, criteria, flags, LEAST_TEXTURE
         )
         moved = np.abs(there - guess)
         good = (status.ravel() > 0) & (moved[:, 1] < WRONG_ROW_PX) & (moved[:, 0] < MOST_CHANGE_PX)

@@ -14,16 +14,16 @@ from saras.calibration.camera_info import Eye, rectified
 
 Array = npt.NDArray[np.float64]
 
-#: The eyes at 480 rows, of the size that the calibration's simulated endoscope has; other sizes are scaled.
+#: The eyes at 480 rows; other sizes are scaled.
 _ROWS = 480
 _LEFT = Intrinsics(
-    np.array([[560.0, 0.0, 322.0], [0.0, 558.0, 243.0], [0.0, 0.0, 1.0]]),
+    np.array([[440.0, 0.0, 322.0], [0.0, 438.0, 243.0], [0.0, 0.0, 1.0]]),
     np.array([-0.22, 0.08, 5e-4, -4e-4, 0.0]),
     640,
     480,
 )
 _RIGHT = Intrinsics(
-    np.array([[562.0, 0.0, 316.0], [0.0, 561.0, 239.0], [0.0, 0.0, 1.0]]),
+    np.array([[442.0, 0.0, 316.0], [0.0, 441.0, 239.0], [0.0, 0.0, 1.0]]),
     np.array([-0.21, 0.07, -3e-4, 2e-4, 0.0]),
     640,
     480,
@@ -48,7 +48,7 @@ class StereoCamera:
 
 
 def stereo_camera(width: int = 640, height: int = 480) -> StereoCamera:
-    """The simulated endoscope, about 60 degrees wide at 4:3. Raises ConfigError for sizes outside 64 … 4096."""
+    """The simulated endoscope, about 75 degrees wide at 4:3. Raises ConfigError for sizes outside 64 … 4096."""
     for name, value in (("width", width), ("height", height)):
         if not 64 <= value <= 4096:
             raise ConfigError(f"{name} = {value}: must be in [64, 4096]")
