@@ -83,7 +83,7 @@ def coloured(image: np.ndarray) -> np.ndarray:
 
 
 def same_lines(frame: ToolOverlayOutput, rectified: bool) -> float:
-    """Share of the peer's lines that are within NEAR_PX of ours: it has whole pixels of thickness, and other letters."""
+    """Share of the peer's lines that are within NEAR_PX of ours: its lines are whole pixels thick."""
     import cv2
     import overlay_opencv
 
