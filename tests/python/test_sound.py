@@ -1,0 +1,96 @@
+"""Sound with its times: from a test source, through a file, and back."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from saras import ConfigError
+
+pytest.importorskip("gi")
+from saras.capture.grabber import gstreamer
+from saras.capture.sound import Chunk, Microphone, SoundError, SoundFile, source_text, times_ns
+
+RATE_HZ = 16000
+
+
+def decoded(path: Path) -> np.ndarray:
+    gst = gstreamer()
+    decoder = "flacparse ! flacdec ! audioconvert ! audio/x-raw,format=S16LE"
+    pipeline = gst.parse_launch(f"filesrc location={path} ! {decoder} ! appsink name=out sync=false")
+    out, parts = pipeline.get_by_name("out"), []
+    pipeline.set_state(gst.State.PLAYING)
+    while (sample := out.emit("pull-sample")) is not None:
+        buffer = sample.get_buffer()
+        parts.append(np.frombuffer(buffer.extract_dup(0, buffer.get_size()), np.int16))
+    pipeline.set_state(gst.State.NULL)
+    return np.concatenate(parts)
+
+
+def heard(source: str, chunks: int) -> list[Chunk]:
+    found: list[Chunk] = []
+    microphone = Microphone(source_text(source), found.append, rate_hz=RATE_HZ)
+    microphone.start()
+    end = time.monotonic() + 60.0
+    while len(found) < chunks and time.monotonic() < end:
+        time.sleep(0.05)
+    microphone.stop()
+    assert len(found) >= chunks, microphone.state
+    return found[:chunks]
+
+
+def test_a_tone_comes_without_gaps_and_at_its_time() -> None:
+    begin_ns = time.time_ns()
+    chunks = heard("test", 12)
+    assert [chunk.first for chunk in chunks] == [1600 * k for k in range(12)]
+    assert all(begin_ns - 10**9 < chunk.taken_ns <= time.time_ns() for chunk in chunks)
+    steps = np.diff([chunk.taken_ns for chunk in chunks])
+    assert abs(steps.mean() - 1e8) < 2e7
+    samples = np.concatenate([chunk.samples[:, 0] for chunk in chunks]).astype(float)
+    spectrum = np.abs(np.fft.rfft(samples * np.hanning(len(samples))))
+    assert abs(np.argmax(spectrum) * RATE_HZ / len(samples) - 440.0) < 2.0
+
+
+def test_a_file_keeps_every_sample(tmp_path: Path) -> None:
+    rng, path = np.random.default_rng(1), tmp_path / "a.flac"
+    samples = rng.integers(-20000, 20000, (48_123, 1)).astype(np.int16)
+    file, done = SoundFile(path, RATE_HZ, 1), 0
+    while done < len(samples):
+        count = int(rng.integers(300, 3000))
+        # A gap of 5 s in the middle, and a clock of the sound card that is 0.1 % slow.
+        file.write(samples[done : done + count], round(1e18 + done * 1.001e9 / RATE_HZ + 5e9 * (done > 20000)))
+        done += count
+    file.close()
+    np.testing.assert_array_equal(decoded(path), samples[:, 0])
+    for number in (0, 5000, 15000, 30000, 48_122):
+        truth_ns = 1e18 + number * 1.001e9 / RATE_HZ + 5e9 * (number > 20000)
+        assert abs(int(times_ns(path, [number])[0]) - truth_ns) < 1e9 if 17000 < number < 23000 else 2e7
+
+
+def test_what_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match="source = 'radio'"):
+        source_text("radio")
+    with pytest.raises(ConfigError, match="pipeline"):
+        source_text("pipeline")
+    path = tmp_path / "a.flac"
+    file = SoundFile(path, RATE_HZ, 2)
+    with pytest.raises(ConfigError, match=r"must be \(n, 2\)"):
+        file.write(np.zeros((10, 1), np.int16), 0)
+    file.write(np.zeros((1600, 2), np.int16), 0)
+    file.write(np.zeros((1600, 2), np.int16), 100_000_000)
+    file.close()
+    with pytest.raises(SoundError, match="exists"):
+        SoundFile(path, RATE_HZ, 2)
+
+
+def test_a_source_that_fails_says_so_and_is_tried_again() -> None:
+    microphone = Microphone("alsasrc device=nobody_has_this", lambda chunk: None, retry_s=0.1)
+    microphone.start()
+    end = time.monotonic() + 60.0
+    while microphone.failures < 2 and time.monotonic() < end:
+        time.sleep(0.05)
+    assert microphone.failures >= 2 and microphone.state.startswith("LOST: ")
+    microphone.stop()
