@@ -336,4 +336,4 @@ def test_missing_topics_and_the_exit_code(tmp_path, capsys):
 
 def test_the_platforms_own_list_is_read():
     names = expected_topics(synthetic.ROOT / "config" / "record_topics.yaml")
-    assert "/mesa_right/ee_pose" in names
+    assert "/mesa_right/ee_pose" in names and "/system/faults" not in names

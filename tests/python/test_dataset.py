@@ -110,6 +110,31 @@ def test_rows_are_frames_when_there_are_frames(tmp_path):
         table_of(tmp_path / "s.bag", frames="/none")
 
 
+def test_rows_are_frames_of_the_video_beside_the_bag(tmp_path):
+    bag = synthetic.BagWriter(tmp_path / "s.bag")
+    for k in range(200):
+        bag.pose("/mesa_left/ee_pose", k / 100, (k / 100, 0, 0), "mesa_left/sbs_world")
+    for k in range(20):
+        for side, offset in (("left", 0), ("right", 3)):
+            if (side, k) != ("right", 7):  # a picture of one eye was lost
+                topic, t = f"/recorder/video/{side}", 0.1 + k / 15
+                file = f"s_{side}.mkv"
+                header = bag.header(topic, t)
+                bag.put(topic, "saras_ros1/msg/VideoFrame", t, header=header, frame=k + offset, file=file)
+    bag.close()
+    (tmp_path / "s_left.mkv").write_bytes(b"video")
+    made, table = table_of(tmp_path / "s.bag")
+    assert made.rows == "a frame of the left video"
+    np.testing.assert_array_equal(table["frame"], np.arange(20))
+    right = np.arange(20) + 3.0
+    right[7] = np.nan
+    np.testing.assert_array_equal(table["frame_right"], right)
+    np.testing.assert_allclose(table["mesa_left_tip_x_m"], 0.1 + np.arange(20) / 15, atol=1e-6)
+    card = export([tmp_path / "s.bag"], tmp_path / "set", videos=True)
+    assert card["sessions"][0]["videos"] == ["s_left.mkv"]
+    assert (tmp_path / "set" / "videos" / "s" / "s_left.mkv").read_bytes() == b"video"
+
+
 def test_annotations_become_columns(tmp_path):
     bag = synthetic.BagWriter(tmp_path / "s.bag")
     for k in range(100):
@@ -117,9 +142,10 @@ def test_annotations_become_columns(tmp_path):
     for t, text in (
         (1.0, {"kind": "action", "label": "grasp"}),
         (3.0, {"kind": "action", "label": "pull"}),
-        (5.0, {"kind": "action", "label": ""}),
+        (5.0, {"kind": "action", "label": "end"}),
         (2.03, {"kind": "misunderstanding", "label": "which clip?"}),
-        (2.04, {"label": "smoke"}),
+        # As the recorder writes them: the time that counts is that of the mark.
+        (7.0, {"kind": "note", "label": "smoke", "text": "much", "stamp_ns": synthetic.START_NS + 2_040_000_000}),
     ):
         bag.text("/recorder/annotations", t, json.dumps(text))
     bag.text("/recorder/annotations", 6.0, "not json")
@@ -129,7 +155,7 @@ def test_annotations_become_columns(tmp_path):
     action = table["annotation_action"]
     assert set(action[(t > 1.01) & (t < 2.99)]) == {"grasp"} and set(action[(t > 3.01) & (t < 4.99)]) == {"pull"}
     assert action[(t < 0.99) | (t > 5.01)].isna().all()
-    assert table["annotation_note"].dropna().to_dict() == {21: "which clip?; smoke"}
+    assert table["annotation_note"].dropna().to_dict() == {21: "which clip?; smoke: much"}
     assert list(np.flatnonzero(table["annotation_misunderstanding"])) == [21]
     assert any("no JSON" in note for note in made.notes)
 

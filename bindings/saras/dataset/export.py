@@ -49,6 +49,7 @@ def export(
     workers: int = 1,
     scheduler: str | None = None,
     phase: str = "time",
+    videos: bool = False,
     progress: Callable[[str], None] | None = None,
 ) -> dict[str, Any]:
     """Writes the data set into the directory ``out``; returns its card.
@@ -83,6 +84,8 @@ def export(
             if progress is not None:
                 progress(one.name)
         every = [done[name] for name in names]
+        if videos:
+            _copy_videos(part / "videos", bags, every)
         if calibration:
             (part / "calibration").mkdir()
             for file in calibration:
@@ -126,6 +129,20 @@ def session_names(bags: Sequence[str | Path]) -> list[str]:
             name, number = f"{base}_{number}", number + 1
         names.append(name)
     return names
+
+
+def videos_of(bag: Path) -> list[Path]:
+    """Videos that were recorded beside a bag, with their indices of frames."""
+    stem = bag.name.removesuffix(".bag").removesuffix(".repaired")
+    names = [f"{stem}_{side}.{ending}" for side in ("left", "right") for ending in ("mkv", "frames.csv")]
+    return [bag.with_name(name) for name in names if bag.with_name(name).is_file()]
+
+
+def _copy_videos(directory: Path, bags: Sequence[str | Path], every: list[Exported]) -> None:
+    for bag, one in zip(bags, every):
+        for file in videos_of(Path(bag)):
+            (directory / one.name).mkdir(parents=True, exist_ok=True)
+            shutil.copy2(file, directory / one.name / file.name)
 
 
 def versions() -> dict[str, str]:
@@ -186,6 +203,7 @@ def export_session(job: Job) -> Exported:
             "info": session.info,
             "columns": [asdict(info) for info in table.infos],
             "sources": [asdict(source) for source in table.sources],
+            "videos": [file.name for file in videos_of(Path(job.bag))],
             "absent": table.absent,
             "notes": table.notes,
             "validation": validate(session, job.options),

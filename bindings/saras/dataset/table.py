@@ -21,10 +21,12 @@ Floats = NDArray[np.float64]
 
 #: Whose stamps are rows when nothing else is asked for; the first that was recorded.
 FRAME_TOPICS = (
+    "/recorder/video/left",
     "/endoscope/left/image_raw",
     "/endoscope/left/image_raw/compressed",
     "/endoscope/left/camera_info",
 )
+VIDEO = "/recorder/video/"
 USUAL_RATE_HZ = 25.0
 MOST_ROWS = 50_000_000
 
@@ -114,7 +116,7 @@ def make_table(session: Session, options: Options | None = None) -> Table:
             table.absent.append(source.name)
         else:
             _add(table, source, topic, t, options)
-    for info, values in annotation_columns(session.topic("/recorder/annotations"), t, table.notes):
+    for info, values in annotation_columns(session.topic("/recorder/annotations"), t, start_ns, table.notes):
         table.add(ColumnInfo(info[0], "", "", "/recorder/annotations", info[1], info[2]), values)
     return table
 
@@ -129,6 +131,8 @@ def _rows(session: Session, options: Options) -> tuple[Floats, str, dict[str, tu
     if options.frames is None and options.rate_hz is None:
         wanted = [name for name in FRAME_TOPICS if name in session.topics][:1]
     if wanted:
+        if wanted[0].startswith(VIDEO):
+            return _video_rows(session, wanted[0], options)
         heads = session.heads(wanted[0])
         if heads is None:
             raise Error(f"{session.path}: {wanted[0]} was not recorded: no frames to make rows of (--rate-hz)")
@@ -141,6 +145,42 @@ def _rows(session: Session, options: Options) -> tuple[Floats, str, dict[str, tu
     if count > MOST_ROWS:
         raise Error(f"{session.path}: {count} rows at {rate_hz} Hz: must be <= {MOST_ROWS}")
     return np.arange(count) / rate_hz, f"every {1e3 / rate_hz:g} ms", {}
+
+
+def _video_rows(session: Session, name: str, options: Options) -> tuple[Floats, str, dict[str, Any]]:
+    """Frames of the video beside the bag, with the other eye's frame of the same instant."""
+    topic = session.topic(name)
+    if topic is None:
+        raise Error(f"{session.path}: {name} was not recorded: no frames to make rows of (--rate-hz)")
+    order, _ = resample.usable(topic.t, topic.t_received, options.age_max_s)
+    t = topic.t[order]
+    if not len(t):
+        raise Error(f"{session.path}: {name}: no stamp is within {options.age_max_s} s of its reception")
+    files = np.array([str(file) for file in topic["file"][order]], dtype=object)
+    extra: dict[str, Any] = {
+        "frame": (topic["frame"][order], "number of the frame in its video, from 0"),
+        "video": (files, "file of the video"),
+    }
+    side = name.removeprefix(VIDEO)
+    other = {"left": "right", "right": "left"}.get(side, "")
+    second = session.topic(VIDEO + other)
+    if second is not None:
+        where, _ = resample.usable(second.t, second.t_received, options.age_max_s)
+        extra[f"frame_{other}"] = (
+            _nearest(second.t[where], second["frame"][where].astype(float), t),
+            f"number of the {other} eye's nearest frame, within half a frame; NaN: none",
+        )
+    return t, f"a frame of the {side} video", extra
+
+
+def _nearest(t: Floats, values: Floats, at: Floats) -> Floats:
+    if not len(t):
+        return np.full(len(at), np.nan)
+    right = np.clip(np.searchsorted(t, at), 0, len(t) - 1)
+    left = np.maximum(right - 1, 0)
+    place = np.where(np.abs(t[left] - at) <= np.abs(t[right] - at), left, right)
+    bound_s = 0.5 * float(np.median(np.diff(t))) if len(t) > 1 else 0.02
+    return np.where(np.abs(t[place] - at) <= bound_s, values[place], np.nan)
 
 
 def read_frame_index(path: str | Path) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
