@@ -52,6 +52,9 @@ def parse(argv: list[str] | None = None) -> argparse.Namespace:
         default="separate",
         help="a process each law, or all laws in one real-time loop",
     )
+    parser.add_argument(
+        "--endoscope", action="store_true", help="with a simulated stereo endoscope, overlay and seen contact"
+    )
     parser.add_argument("--seed", type=int, default=1, help="of everything random in the simulation")
     arguments = parser.parse_args(argv)
     if arguments.duration is not None and not 0 < arguments.duration <= 86400:
@@ -81,6 +84,8 @@ def launch_arguments(arguments: argparse.Namespace, out: Path) -> dict[str, str]
         "arm_port_left": str(left),
         "arm_port_right": str(right),
     }
+    if arguments.endoscope:
+        wanted.update(endoscope="sim", overlay="true", contact="true")
     if arguments.motion:
         wanted["motion"] = arguments.motion
     declared = declared_arguments()

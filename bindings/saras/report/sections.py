@@ -10,6 +10,7 @@ from saras.recording import Session
 from saras.recording.session import CHANNEL_STATES
 from saras.report.distances import distances
 from saras.report.motion import forces, remote_centre, trajectories
+from saras.report.overlay import overlay
 from saras.report.parts import COLORS, both_sides, chart, clutch_bands, table
 from saras.report.passivity import damping, ledger, tanks
 from saras.report.svg import box, text_at
@@ -25,6 +26,7 @@ def sections(session: Session, found: Findings) -> list[tuple[str, str]]:
         ("Trajectories", trajectories),
         ("Forces", forces),
         ("Distances", distances),
+        ("Overlay", overlay),
         ("Tank energy", tanks),
         ("Energy ledger", ledger),
         ("Damping and reduction", damping),
