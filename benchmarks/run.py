@@ -20,6 +20,7 @@ import latency
 import overlay
 import peers
 import pipeline
+import recording
 import scenario
 import stereo_contact
 import struct_codec
@@ -27,7 +28,7 @@ import struct_codec
 from saras import net
 
 PYTHON_PEERS = {"teleop": ("numpy", peers.teleop), "codec": ("struct", peers.codec)}
-GROUPS = [*PYTHON_PEERS, "collision", "calibration", "latency", "overlay", "stereo_contact"]
+GROUPS = [*PYTHON_PEERS, "collision", "calibration", "latency", "overlay", "stereo_contact", "recording"]
 BENCH_PYTHON = Path(__file__).parents[1] / "bench-venv" / "bin" / "python"
 TOLERANCE = 1e-9
 COLLISION_PAIRS = 100_000
@@ -109,6 +110,7 @@ def run(groups, program, soak_s=0.0):
         rows += latency.run(program.with_name("saras_latency_benchmark"), soak_s)
     rows += overlay.run() if "overlay" in groups else []
     rows += stereo_contact.run() if "stereo_contact" in groups else []
+    rows += recording.run() if "recording" in groups else []
     return rows
 
 
@@ -152,7 +154,7 @@ def show(rows):
     for heading in ("ours", "peer", "their p50 : ours"):
         table.add_column(heading, justify="right")
     for row in rows:
-        digits = {"calibration": 3, "stereo_contact": 1}.get(row["group"], 0)
+        digits = {"calibration": 3, "stereo_contact": 1, "recording": 1}.get(row["group"], 0)
         ours = " / ".join(f"{row['ours'][p]:,.{digits}f}" for p in ("p50", "p99"))
         if not row["peers"]:
             table.add_row(row["group"], row["name"], row["unit"], ours, "", "")
@@ -176,7 +178,7 @@ def main():
         parser.error(f"unknown group {', '.join(sorted(unknown))}; there are {', '.join(GROUPS)}")
     try:
         rows = run(arguments.groups or list(GROUPS), arguments.program, arguments.soak)
-    except (NotTheSame, calibration.NoResult, overlay.NotTheSame) as error:
+    except (NotTheSame, calibration.NoResult, overlay.NotTheSame, recording.NotTheSame) as error:
         print(f"script/bench: {error}", file=sys.stderr)
         return 1
     show(rows)

@@ -41,3 +41,12 @@ def test_opencv_draws_our_overlay(rectified):
 
     for frame in overlay.frames()[:10]:
         assert overlay.same_lines(frame, rectified) >= overlay.LEAST_SHARE
+
+
+def test_rosbag_and_pandas_read_what_our_export_reads(tmp_path):
+    for library in ("rosbag", "rosbags", "pandas", "pyarrow"):
+        pytest.importorskip(library)
+    import recording
+    import synthetic_session
+
+    assert recording.check(synthetic_session.write_session(tmp_path / "s.bag", 2.0)) == 0.0

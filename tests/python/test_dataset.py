@@ -182,12 +182,25 @@ def test_the_set_loads_in_pandas_with_card_units_and_frames(bag, tmp_path, capsy
 
 
 def test_processes_give_the_same_as_one(bag, tmp_path):
-    pytest.importorskip("distributed")
+    pytest.importorskip("dask")
     other = synthetic.write_session(tmp_path / "two.bag", duration_s=3.0)
     for workers in (1, 2):
         export([bag, other], tmp_path / f"set{workers}", workers=workers)
     for name in ("sessions/one.parquet", "sessions/two.parquet", "nominal.parquet"):
         a, b = (pandas.read_parquet(tmp_path / f"set{workers}" / name) for workers in (1, 2))
+        pandas.testing.assert_frame_equal(a, b)
+
+
+def test_a_dask_cluster_gives_the_same(bag, tmp_path):
+    distributed = pytest.importorskip("distributed")
+    other = synthetic.write_session(tmp_path / "two.bag", duration_s=3.0)
+    export([bag, other], tmp_path / "here")
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None, host="127.0.0.1", protocol="tcp"
+    ) as cluster:
+        export([bag, other], tmp_path / "there", scheduler=cluster.scheduler_address)
+    for name in ("sessions/one.parquet", "sessions/two.parquet", "nominal.parquet"):
+        a, b = (pandas.read_parquet(tmp_path / where / name) for where in ("here", "there"))
         pandas.testing.assert_frame_equal(a, b)
 
 

@@ -33,7 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="K",
         help="no value across a gap of more than K periods of its topic (default %(default)s)",
     )
-    parser.add_argument("--videos", action="store_true", help="copy the videos beside the bags into the set")
+    parser.add_argument("--videos", action="store_true", help="copy videos and sound beside the bags too")
     parser.add_argument("--phase", choices=("time", "path"), default="time", help="of the nominal trajectories")
     parser.add_argument("--workers", type=int, metavar="N", help="processes (default: as many as bags and processors)")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of a dask cluster, instead of processes here")

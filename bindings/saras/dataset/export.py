@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import platform
 import shutil
 from collections.abc import Callable, Iterator, Sequence
@@ -132,9 +131,10 @@ def session_names(bags: Sequence[str | Path]) -> list[str]:
 
 
 def videos_of(bag: Path) -> list[Path]:
-    """Videos that were recorded beside a bag, with their indices of frames."""
+    """Videos and sound that were recorded beside a bag, with their indices."""
     stem = bag.name.removesuffix(".bag").removesuffix(".repaired")
     names = [f"{stem}_{side}.{ending}" for side in ("left", "right") for ending in ("mkv", "frames.csv")]
+    names += [f"{stem}_audio.{ending}" for ending in ("flac", "samples.csv")]
     return [bag.with_name(name) for name in names if bag.with_name(name).is_file()]
 
 
@@ -165,21 +165,22 @@ def _run(jobs: list[Job], workers: int, scheduler: str | None) -> Iterator[Expor
     if scheduler is None and (workers <= 1 or len(jobs) == 1):
         yield from map(export_session, jobs)
         return
-    from dask.distributed import Client, LocalCluster, as_completed
+    import dask
 
-    with contextlib.ExitStack() as stack:
-        if scheduler is None:
-            cluster = LocalCluster(
-                n_workers=min(workers, len(jobs)), threads_per_worker=1, dashboard_address=None, host="127.0.0.1"
-            )
-            client = stack.enter_context(Client(stack.enter_context(cluster)))
-        else:
-            try:
-                client = stack.enter_context(Client(scheduler, timeout="10s"))
-            except (OSError, ValueError) as error:
-                raise Error(f"scheduler = {scheduler}: no dask cluster answers there: {error}") from error
-        futures = client.map(export_session, jobs, pure=False)
-        for future in as_completed(futures):
+    tasks = [dask.delayed(export_session, pure=False)(job) for job in jobs]
+    if scheduler is None:
+        # A fork would copy the locks of pyarrow's threads.
+        with dask.config.set({"multiprocessing.context": "spawn"}):
+            yield from dask.compute(*tasks, scheduler="processes", num_workers=min(workers, len(jobs)), chunksize=1)
+        return
+    from dask.distributed import Client, as_completed
+
+    try:
+        client = Client(scheduler, timeout="10s")
+    except (OSError, ValueError) as error:
+        raise Error(f"scheduler = {scheduler}: no dask cluster answers there: {error}") from error
+    with client:
+        for future in as_completed(client.compute(tasks)):
             yield future.result()
 
 
