@@ -11,8 +11,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from saras import ConfigError, Error
+from saras import ConfigError
 from saras.capture.grabber import gstreamer
+from saras.capture.sound_index import INDEX_HEAD, SoundError, index_path, times_ns
 
 Samples = npt.NDArray[np.int16]
 
@@ -25,11 +26,6 @@ SOURCES = {
 }
 POLL_NS = 50_000_000
 CLOSE_S = 10
-INDEX_HEAD = "sample,stamp_ns\n"
-
-
-class SoundError(Error):
-    """Nothing can be heard, or the file cannot be written; the text says why."""
 
 
 class Chunk(NamedTuple):
@@ -202,25 +198,6 @@ def _failure(gst: Any, bus: Any) -> str | None:
     if message is None:
         return None
     return "the end of it was reached" if message.type == gst.MessageType.EOS else str(message.parse_error()[0].message)
-
-
-def index_path(sound: Path) -> Path:
-    """Of the index beside a sound file: sample, stamp_ns."""
-    return sound.with_suffix(".samples.csv")
-
-
-def times_ns(sound: Path, samples: npt.ArrayLike) -> npt.NDArray[np.int64]:
-    """When samples (by number in the file) were taken, nanoseconds since the epoch: between the index's entries."""
-    lines = index_path(sound).read_text(encoding="utf-8").split("\n")
-    if lines[0] + "\n" != INDEX_HEAD or len(lines) < 4:
-        raise SoundError(f"{index_path(sound)}: no index of samples")
-    table = np.array([[int(cell) for cell in line.split(",")] for line in lines[1:-1]], dtype=np.int64)
-    numbers, stamps = table[:, 0].astype(float), table[:, 1] - table[0, 1]
-    asked = np.asarray(samples, dtype=float)
-    found = np.interp(asked, numbers, stamps)
-    rate = (stamps[-1] - stamps[0]) / (numbers[-1] - numbers[0])  # beyond the last chunk's begin: on at its pace
-    found = np.where(asked > numbers[-1], stamps[-1] + rate * (asked - numbers[-1]), found)
-    return np.asarray(np.round(found), np.int64) + table[0, 1]
 
 
 __all__ = ["SOURCES", "Chunk", "Microphone", "SoundError", "SoundFile", "index_path", "source_text", "times_ns"]

@@ -1,0 +1,38 @@
+"""When which sample of a sound file was taken: the index beside it. Needs no GStreamer."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from saras import Error
+
+INDEX_HEAD = "sample,stamp_ns\n"
+
+
+class SoundError(Error):
+    """Nothing can be heard, or the file cannot be written; the text says why."""
+
+
+def index_path(sound: Path) -> Path:
+    """Of the index beside a sound file: sample, stamp_ns."""
+    return sound.with_suffix(".samples.csv")
+
+
+def times_ns(sound: Path, samples: npt.ArrayLike) -> npt.NDArray[np.int64]:
+    """When samples (by number in the file) were taken, nanoseconds since the epoch: between the index's entries."""
+    lines = index_path(sound).read_text(encoding="utf-8").split("\n")
+    if lines[0] + "\n" != INDEX_HEAD or len(lines) < 4:
+        raise SoundError(f"{index_path(sound)}: no index of samples")
+    table = np.array([[int(cell) for cell in line.split(",")] for line in lines[1:-1]], dtype=np.int64)
+    numbers, stamps = table[:, 0].astype(float), table[:, 1] - table[0, 1]
+    asked = np.asarray(samples, dtype=float)
+    found = np.interp(asked, numbers, stamps)
+    rate = (stamps[-1] - stamps[0]) / (numbers[-1] - numbers[0])  # beyond the last chunk's begin: on at its pace
+    found = np.where(asked > numbers[-1], stamps[-1] + rate * (asked - numbers[-1]), found)
+    return np.asarray(np.round(found), np.int64) + table[0, 1]
+
+
+__all__ = ["INDEX_HEAD", "SoundError", "index_path", "times_ns"]
