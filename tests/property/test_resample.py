@@ -106,3 +106,16 @@ def test_stamps_far_from_their_reception_and_doubled_ones_are_left_out():
     order, dropped = resample.usable(t, received, 5.0)
     assert dropped == 2
     np.testing.assert_array_equal(order, [0, 1, 5, 4])
+
+
+def test_signs_do_not_jump_and_rotations_stay(many):
+    rng = np.random.default_rng(9)
+    for _ in range(20 * many):
+        smooth = Rotation.from_rotvec(np.cumsum(rng.normal(0, 0.05, (100, 3)), axis=0)).as_quat()
+        smooth[rng.random(100) < 0.1] = np.nan
+        signs = rng.choice([-1.0, 1.0], (100, 1))
+        result = resample.continuous(signs * smooth)
+        known = np.isfinite(smooth[:, 0])
+        np.testing.assert_array_equal(np.isfinite(result[:, 0]), known)
+        np.testing.assert_array_equal(np.abs(result[known]), np.abs(smooth[known]))
+        assert (np.sum(np.diff(result[known], axis=0) ** 2, axis=1) < 1.0).all()

@@ -253,6 +253,19 @@ def test_the_nominal_trajectory_is_the_mean_with_its_spread(many):
     assert one.executions == len(found)
 
 
+def test_a_gap_of_one_execution_is_filled_by_nobody():
+    rng = np.random.default_rng(8)
+    whole, holed = execution(rng, 10.0, 0.0), execution(rng, 10.0, 0.0)
+    rows = np.r_[0:80, 120:200]
+    holed = Execution("PSM1", "suture", holed.t[rows], holed.position[rows], holed.quaternion[rows])
+    (both,) = nominal([whole, holed])
+    inside = (both.phase > 0.41) & (both.phase < 0.59)
+    assert set(both.known[inside]) == {1} and set(both.known[~inside & (abs(both.phase - 0.5) > 0.11)]) == {2}
+    assert np.isnan(both.position_std[inside]).all() and np.isfinite(both.position[inside]).all()
+    (alone,) = nominal([holed])
+    assert np.isnan(alone.position[inside]).all() and np.isnan(alone.quaternion[inside]).all()
+
+
 def test_phase_by_path_does_not_care_about_speed():
     rng = np.random.default_rng(7)
     found = [execution(rng, 10.0, 0.0, warp) for warp in (1.0, 2.0, 3.0)]

@@ -237,6 +237,7 @@ def _write_nominal(path: Path, rows: list[Any]) -> None:
             "tool": [row.tool] * len(row.phase),
             "action": [row.label] * len(row.phase),
             "executions": [row.executions] * len(row.phase),
+            "known": row.known,
             "phase": row.phase,
         }
         for number, axis in enumerate("xyz"):

@@ -43,6 +43,7 @@ class Nominal:
     tool: str
     label: str
     executions: int
+    known: NDArray[np.int64]  #: (p,) executions without a gap there
     phase: Floats  #: (p,) 0 to 1
     position: Floats  #: (p, 3) mean [m]
     position_std: Floats  #: (p, 3) standard deviation [m]; NaN of a single execution
@@ -52,7 +53,7 @@ class Nominal:
 
 
 def executions(columns: Mapping[str, NDArray[Any]]) -> list[Execution]:
-    """Stretches of one session's table without an unknown row."""
+    """Stretches of one session's table; rows without a known pose are left out of them."""
     found = []
     t = np.asarray(columns["t_s"], dtype=float)
     action = columns.get("annotation_action", np.full(len(t), None, dtype=object))
@@ -64,20 +65,19 @@ def executions(columns: Mapping[str, NDArray[Any]]) -> list[Execution]:
         pose = np.stack([np.asarray(columns[name], dtype=float) for name in names], axis=1)
         known = np.isfinite(pose).all(axis=1)
         state = columns.get(f"{tool}_state")
-        if state is not None:
-            known &= np.array([word == "ENGAGED" for word in state], dtype=bool)
+        engaged = np.array([word == "ENGAGED" for word in state]) if state is not None else np.ones(len(t), dtype=bool)
         labels = [(label or None) if annotated else "" for label in action]
-        for start, stop in _stretches(known, labels):
-            if stop - start >= _FEWEST:
-                rows = slice(start, stop)
+        for start, stop in _stretches(engaged, labels):
+            rows = start + np.flatnonzero(known[start:stop])
+            if len(rows) >= _FEWEST:
                 found.append(Execution(tool, str(labels[start]), t[rows], pose[rows, :3], pose[rows, 3:]))
     return found
 
 
-def _stretches(known: NDArray[np.bool_], labels: list[str | None]) -> Iterable[tuple[int, int]]:
+def _stretches(wanted: NDArray[np.bool_], labels: list[str | None]) -> Iterable[tuple[int, int]]:
     start: int | None = None
-    for row in range(len(known) + 1):
-        inside = row < len(known) and bool(known[row]) and labels[row] is not None
+    for row in range(len(wanted) + 1):
+        inside = row < len(wanted) and bool(wanted[row]) and labels[row] is not None
         if start is not None and (not inside or labels[row] != labels[start]):
             yield start, row
             start = None
@@ -106,7 +106,10 @@ def nominal(found: Iterable[Execution], by: str = "time", phases: int = PHASES) 
         keep = np.append(np.diff(phase) > 0, True)
         position, _ = resample.linear(phase[keep], execution.position[keep], grid, np.inf)
         rotation, _ = resample.slerp(phase[keep], execution.quaternion[keep], grid, np.inf)
-        # The first row may have been dropped for one of the same phase.
+        # Nor here across a gap.
+        when = np.interp(grid, phase[keep], execution.t[keep])
+        gap = ~resample.brackets(execution.t, when, resample.default_gap_s(execution.t))[2]
+        position[gap], rotation[gap] = np.nan, np.nan
         groups.setdefault((execution.tool, execution.label), []).append((execution, position, rotation))
     return [_nominal(key, rows, grid) for key, rows in sorted(groups.items())]
 
@@ -114,26 +117,37 @@ def nominal(found: Iterable[Execution], by: str = "time", phases: int = PHASES) 
 def _nominal(key: tuple[str, str], rows: list[tuple[Execution, Floats, Floats]], grid: Floats) -> Nominal:
     position = np.stack([row[1] for row in rows])
     rotation = np.stack([row[2] for row in rows])
-    mean = mean_rotation(rotation)
-    several = len(rows) > 1
+    known = np.isfinite(position).all(axis=2).sum(axis=0)
+    mean = resample.continuous(mean_rotation(rotation))
     cosine = np.clip(np.abs(np.sum(rotation * mean, axis=2)), 0.0, 1.0)
-    angle = 2.0 * np.arccos(cosine)
-    spread = np.sqrt(np.sum(angle**2, axis=0) / (len(rows) - 1)) if several else np.full(len(grid), np.nan)
+    angle = np.nansum((2.0 * np.arccos(cosine)) ** 2, axis=0)
+    # Where one execution or none is known, the divisions give the NaN that is due.
+    with np.errstate(invalid="ignore", divide="ignore"):
+        centre = np.nansum(position, axis=0) / known[:, None]
+        centre[known == 0] = np.nan
+        spread = np.nansum((position - centre) ** 2, axis=0)
+        fewer = np.where(known > 1, known - 1, np.nan)
+        position_std, rotation_std = np.sqrt(spread / fewer[:, None]), np.sqrt(angle / fewer)
+    durations = [row[0].t[-1] - row[0].t[0] for row in rows]
     return Nominal(
         key[0],
         key[1],
         len(rows),
+        known,
         grid,
-        position.mean(axis=0),
-        position.std(axis=0, ddof=1) if several else np.full((len(grid), 3), np.nan),
+        centre,
+        position_std,
         mean,
-        spread,
-        float(np.mean([row[0].t[-1] - row[0].t[0] for row in rows])),
+        rotation_std,
+        float(np.mean(durations)),
     )
 
 
 def mean_rotation(quaternions: Floats) -> Floats:
-    """(p, 4) of (m, p, 4): the eigenvector of largest eigenvalue of the mean of q qᵀ (Markley et al. 2007)."""
-    outer = np.einsum("mpi,mpj->pij", quaternions, quaternions) / len(quaternions)
-    mean = np.linalg.eigh(outer)[1][:, :, -1]
-    return np.where(mean[:, 3:] < 0, -mean, mean)
+    """(p, 4) of (m, p, 4), NaN left out: the largest eigenvector of the mean of q qᵀ (Markley et al. 2007)."""
+    known = np.isfinite(quaternions).all(axis=2)
+    present = np.where(known[:, :, None], quaternions, 0.0)
+    mean = np.linalg.eigh(np.einsum("mpi,mpj->pij", present, present))[1][:, :, -1]
+    mean = np.where(mean[:, 3:] < 0, -mean, mean)
+    mean[~known.any(axis=0)] = np.nan
+    return np.asarray(mean)

@@ -88,6 +88,16 @@ def slerp(t: Floats, quaternions: Floats, at: Floats, gap_s: float) -> tuple[Flo
     return result, valid
 
 
+def continuous(quaternions: Floats) -> Floats:
+    """(m, 4) with each sign nearest to the known one before it: q and -q are one rotation, yet far apart as numbers."""
+    known = np.flatnonzero(np.isfinite(quaternions).all(axis=1))
+    result = quaternions.copy()
+    if len(known) > 1:
+        towards = np.sum(quaternions[known[1:]] * quaternions[known[:-1]], axis=1)
+        result[known[1:]] *= np.cumprod(np.where(towards < 0, -1.0, 1.0))[:, None]
+    return result
+
+
 def previous(t: Floats, at: Floats, age_max_s: float) -> tuple[Indices, Floats, Flags]:
     """Index of the newest sample at or before each instant, its age [s] (NaN: none yet), whether it is valid."""
     index = np.searchsorted(t, at, side="right") - 1

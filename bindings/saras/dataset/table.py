@@ -236,6 +236,8 @@ def _interpolated(
         if method in (LINEAR, SLERP):
             change = resample.linear if method == LINEAR else resample.slerp
             result, valid = change(t, values[order].astype(float), at, gap_s)
+            if method == SLERP:
+                result = resample.continuous(result)
             # One unknown part makes the source unknown there, all-NaN columns (a joint that is not measured) do not.
             measured = ~np.isnan(values).all(axis=0) if len(values) else np.zeros(values.shape[1], dtype=bool)
             known &= valid & ~np.isnan(result[:, measured]).any(axis=1) & bool(measured.any())
