@@ -66,7 +66,7 @@ def from_bag(bag: Path, left_topic: str, right_topic: str, every_s: float = 0.5,
                 raise Error(f"{bag}: topic {topic}: not in the bag")
         next_s = -np.inf
         for connection, _, raw in reader.messages(connections):
-            message = store.deserialize_ros1(raw, connection.msgtype)
+            message: Any = store.deserialize_ros1(raw, connection.msgtype)
             at_s = message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec
             newest[connection.topic] = (at_s, message)
             if len(newest) < 2 or at_s < next_s:

@@ -32,7 +32,8 @@ def times_ns(sound: Path, samples: npt.ArrayLike) -> npt.NDArray[np.int64]:
     found = np.interp(asked, numbers, stamps)
     rate = (stamps[-1] - stamps[0]) / (numbers[-1] - numbers[0])  # beyond the last chunk's begin: on at its pace
     found = np.where(asked > numbers[-1], stamps[-1] + rate * (asked - numbers[-1]), found)
-    return np.asarray(np.round(found), np.int64) + table[0, 1]
+    whole: npt.NDArray[np.int64] = np.round(found).astype(np.int64) + table[0, 1]
+    return whole
 
 
 __all__ = ["INDEX_HEAD", "SoundError", "index_path", "times_ns"]
