@@ -50,9 +50,10 @@ class TrustedTest(unittest.TestCase):
     @classmethod
     def set_realtime_params(cls):
         """The host reads the parameters of all nodes that it is; the launch file for frames runs already."""
-        for file in ("teleop", "tanks", "realtime"):
+        for file in ("teleop", "tanks", "realtime", "collision"):
             for name, section in yaml.safe_load((ROOT / "config" / f"{file}.yaml").read_text(encoding="utf-8")).items():
                 rospy.set_param(f"/{name}", section)
+        rospy.set_param("/colliding_regions/regions_file", "none")
         rospy.set_param("/realtime_host/hosting", "realtime")
         rospy.set_param("/realtime_host/hold_after_s", 2.0)
         rospy.set_param("/realtime_host/record_s", 5.0)
