@@ -174,7 +174,8 @@ def operate(arguments: argparse.Namespace, platform: Child) -> float | None:
             now = time.monotonic()
             if platform.exit_code is not None:
                 raise DemoError(f"the platform ended by itself (code {platform.exit_code}):\n{platform.tail()}")
-            engagement.update(status.states(), now)
+            if engagement.since is not None or status.recording:
+                engagement.update(status.states(), now)
             if engagement.since is None:
                 title = "starting"
                 if now - started > START_TIMEOUT_S:

@@ -61,6 +61,12 @@ class Status:
         """ChannelState of each side, None where unknown."""
         return {side: latest.value() for side, latest in self.sides.items()}
 
+    @property
+    def recording(self) -> bool:
+        """Whether what happens now will be in the bag."""
+        state = self.recorder.value()
+        return state is not None and state.recording
+
     def table(self, title: str = "") -> Table:
         """All of it, for rich."""
         grid = Table.grid(padding=(0, 3))
