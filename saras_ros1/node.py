@@ -55,11 +55,10 @@ class StartupError(RuntimeError):
 class Node:
     """Base class: parameters, inputs, outputs, loops, diagnostics, clean shutdown. See the module's docstring."""
 
-    def __init__(self, name: str, *, needs_params: bool = True, sends_images: bool = False) -> None:
+    def __init__(self, name: str, *, needs_params: bool = True) -> None:
         socket.setdefaulttimeout(SOCKET_TIMEOUT_S)
         wake_without_preempting()
-        if not sends_images:  # a socket does not take an image at once: rospy's threads wait for it
-            direct_publishing.install()
+        direct_publishing.install()
         direct_reception.install()
         rospy.core.add_preshutdown_hook(_log_shutdown)
         rospy.init_node(name)

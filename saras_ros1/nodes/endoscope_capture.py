@@ -65,7 +65,7 @@ class EndoscopeCapture(Node):
     """Publishes from the grabbers' threads, as pictures come."""
 
     def __init__(self) -> None:
-        super().__init__("endoscope_capture", sends_images=True)
+        super().__init__("endoscope_capture")
         topics = self.params.text("topics")
         self.layout, self.swap = self.params.text("layout", LAYOUTS), self.params.flag("swap")
         sources = self._sources()

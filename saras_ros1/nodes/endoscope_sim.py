@@ -29,7 +29,7 @@ class EndoscopeSim(Node):
     """Draws on its own timer, and only while someone looks. A picture's stamp is the time of the poses in it."""
 
     def __init__(self) -> None:
-        super().__init__("endoscope_sim", sends_images=True)
+        super().__init__("endoscope_sim")
         self.rate_hz = self.params.number("rate_hz", 0.5, 60.0)
         self.camera = stereo_camera(self.params.integer("width", 64, 4096), self.params.integer("height", 64, 4096))
         quality = self.params.integer("jpeg_quality", 10, 100)
