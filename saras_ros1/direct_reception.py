@@ -12,10 +12,18 @@ import select
 import socket
 import struct
 import threading
+import time
+from io import BytesIO
 from typing import Any, Callable
+from xml.parsers.expat import ExpatError
+from xmlrpc.client import Fault, ProtocolError, ServerProxy
 
 import rospy
+from rospy.exceptions import TransportInitError
 from rospy.impl import tcpros_base
+
+CONNECT_TIMEOUT_S = 5.0
+FIRST_WAIT_S, LONGEST_WAIT_S = 0.25, 8.0  #: between attempts to connect again
 
 _LENGTH = struct.Struct("<I")
 _CHUNK_BYTES = 1 << 18
@@ -26,25 +34,25 @@ class Stream:
 
     def __init__(self, transport: Any, callback: Callable[[list, Any], None]) -> None:
         self.socket: socket.socket = transport.socket
-        self.ended = threading.Event()
+        self.ended = threading.Event()  #: by the publisher, or because rospy closed it
         self._transport, self._callback = transport, callback
         self._protocol = transport.protocol
         # What came together with the handshake.
         self._buffer = bytearray(transport.read_buff.getvalue()[: transport.read_buff.tell()])
 
-    def read(self) -> None:
-        """Takes what is there and calls the callback; never waits. Sets `ended` when the publisher is gone."""
+    def read(self) -> bool:
+        """Takes what is there and calls the callback; never waits. False when the connection has ended."""
         try:
             data = self.socket.recv(_CHUNK_BYTES, socket.MSG_DONTWAIT)
         except BlockingIOError:
-            return
+            return True
         except OSError:
-            data = b""
+            return False
         if not data:
-            self.ended.set()
-            return
+            return False
         self._transport.stat_bytes += len(data)
         self.take(data)
+        return True
 
     def take(self, data: bytes) -> None:
         """Bytes as they came, cut anywhere."""
@@ -93,19 +101,25 @@ class Reception:
     def __init__(self) -> None:
         self._poll = select.epoll()
         self._streams: dict[int, Stream] = {}
+        self._lock = threading.Lock()  # a closed socket's number may be that of the next one at once
         threading.Thread(target=self._run, name="reception", daemon=True).start()
 
     def serve(self, stream: Stream) -> None:
         """Returns when the stream has ended."""
         stream.take(b"")
         number = stream.socket.fileno()
-        self._streams[number] = stream
         try:
-            self._poll.register(number, select.EPOLLIN)
+            with self._lock:
+                self._poll.register(number, select.EPOLLIN)
+                self._streams[number] = stream
             stream.ended.wait()
         except (OSError, ValueError):  # closed before it was registered
             pass
         finally:
+            self._forget(number, stream)
+
+    def _forget(self, number: int, stream: Stream) -> None:
+        with self._lock:
             if self._streams.get(number) is stream:
                 del self._streams[number]
                 with contextlib.suppress(OSError, ValueError):  # a closed socket has left the poll by itself
@@ -114,16 +128,52 @@ class Reception:
     def _run(self) -> None:
         while True:
             for number, _ in self._poll.poll():
-                stream = self._streams.get(number)
+                with self._lock:
+                    stream = self._streams.get(number)
                 if stream is None or stream.ended.is_set():
                     continue
                 try:
-                    stream.read()
+                    there = stream.read()
                 except Exception as error:
                     rospy.logerr_throttle(1.0, f"reception: {type(error).__name__}: {error}")
-                if stream.ended.is_set():
-                    with contextlib.suppress(OSError):
-                        self._poll.unregister(number)
+                    continue
+                if not there:
+                    self._forget(number, stream)  # while the number is still this stream's
+                    stream.ended.set()
+
+
+def publishes(publisher_uri: str, topic: str) -> bool:
+    """Whether the node there still says so. One that cannot be reached may come back: True."""
+    try:
+        code, _, topics = ServerProxy(publisher_uri).getPublications(rospy.get_name())
+    except ConnectionRefusedError:
+        return False
+    except (OSError, Fault, ProtocolError, ExpatError):
+        return True
+    return code == 1 and any(name == topic for name, _ in topics)
+
+
+def _connect_again(transport: Any, topic: str) -> None:
+    """A lost connection to a publisher that is still there is made anew, as roscpp does; else the transport is closed.
+
+    rospy gives it up for good: the topic would be silent until one of the two processes starts again.
+    """
+    wait_s = FIRST_WAIT_S
+    link, transport.socket = transport.socket, None
+    with contextlib.suppress(OSError):
+        link.close()
+    while transport.socket is None and not transport.done and not rospy.is_shutdown():
+        if not publishes(transport.endpoint_id, topic):
+            transport.close()
+            return
+        transport.read_buff = BytesIO()  # bytes of the lost connection would be taken for the new one's header
+        try:
+            transport.connect(*transport.dest_address, transport.endpoint_id, timeout=CONNECT_TIMEOUT_S)
+            rospy.logwarn(f"{topic}: connection to {transport.endpoint_id} was lost and is made anew")
+        except TransportInitError:
+            transport.socket = None
+            time.sleep(wait_s)
+            wait_s = min(2.0 * wait_s, LONGEST_WAIT_S)
 
 
 def install() -> None:
@@ -135,10 +185,13 @@ def install() -> None:
     def receive_loop(self: Any, callback: Callable[[list, Any], None]) -> None:
         if self.socket is None:  # closed meanwhile
             return
-        self._saras_stream = Stream(self, callback)
+        topic = self.protocol.resolved_name
         try:
-            if not self.done:
+            while self.socket is not None and not self.done:
+                self._saras_stream = Stream(self, callback)
                 reception.serve(self._saras_stream)
+                if not self.done and not rospy.is_shutdown():
+                    _connect_again(self, topic)
         finally:
             self.close()
 
