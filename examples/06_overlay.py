@@ -1,6 +1,7 @@
 """What the surgeons see: the overlay of both eyes while all is clear, near, touching, and not known.
 
 Four tools in the simulated room, seen by its stereo endoscope (VTK); without VTK they are drawn on plain ground.
+Needs PyYAML and OpenCV: pip install '.[calibration]'; with VTK: pip install '.[endoscope]'.
 
 python examples/06_overlay.py [--plot FILE.png]
 """
@@ -14,6 +15,7 @@ import numpy as np
 from saras.collision import ProximityMonitor, ProximityMonitorConfig
 from saras.kinematics import scene as scenes
 from saras.overlay import CameraConfig, OverlayPainter, OverlayTool, ToolOverlay, color_of
+from saras.sim.endoscope import Room, StereoRenderer, ToolState, stereo_camera
 
 parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
 parser.add_argument("--plot", help="write a picture here (needs matplotlib)")
@@ -43,13 +45,7 @@ def trocars() -> np.ndarray:
 
 
 def camera_configs() -> list[CameraConfig]:
-    """Both eyes: 560 px focal length, barrel distortion, 5 mm apart."""
-    try:
-        from saras.sim.endoscope import stereo_camera
-    except ImportError:  # without OpenCV: a simpler pair
-        k = np.array([[560.0, 0.0, 322.0], [0.0, 558.0, 243.0], [0.0, 0.0, 1.0]])
-        plain = {"width_px": 640, "height_px": 480, "K": k, "distortion": [-0.22, 0.08, 5e-4, -4e-4, 0, 0, 0, 0]}
-        return [CameraConfig(P=np.column_stack([k, [-k[0, 0] * b, 0.0, 0.0]]), **plain) for b in (0.0, 0.0052)]
+    """Both eyes of the simulated endoscope."""
     pair = stereo_camera()
     return [
         CameraConfig(
@@ -67,8 +63,6 @@ def camera_configs() -> list[CameraConfig]:
 def renderer():
     """A function of the tips that gives both eyes' pictures (RGB)."""
     try:
-        from saras.sim.endoscope import Room, StereoRenderer, ToolState, stereo_camera
-
         draw = StereoRenderer(Room.load(SCENE), stereo_camera(), seed=1, noise=0.0)
     except Exception as missing:  # no VTK, or nothing to draw on
         print(f"on plain ground: {missing}", file=sys.stderr)

@@ -27,7 +27,7 @@ def fresh_python(tmp_path_factory: pytest.TempPathFactory) -> Path:
     base = getattr(sys, "_base_executable", sys.executable)
     assert run(base, "-m", "venv", where / "venv", cwd=where).returncode == 0
     python = where / "venv" / "bin" / "python"
-    done = run(python, "-m", "pip", "install", "--quiet", f"{ROOT}[plot]", cwd=where)
+    done = run(python, "-m", "pip", "install", "--quiet", f"{ROOT}[plot,calibration]", cwd=where)
     assert done.returncode == 0, done.stderr[-3000:]
     return python
 
