@@ -100,7 +100,7 @@ def rectified(left: Intrinsics, right: Intrinsics, right_T_left: Array, name: st
         right.distortion,
         (left.width, left.height),
         right_T_left[:3, :3],
-        right_T_left[:3, 3],
+        right_T_left[:3, 3:4],
         alpha=0,
     )
     return Eye(left, r1, p1, f"{name}_left"), Eye(right, r2, p2, f"{name}_right")
