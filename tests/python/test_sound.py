@@ -11,7 +11,7 @@ import pytest
 from saras import ConfigError
 
 pytest.importorskip("gi")
-from saras.capture.grabber import gstreamer
+from saras.capture.pulled_pipeline import gstreamer
 from saras.capture.sound import Chunk, Microphone, SoundError, SoundFile, source_text, times_ns
 
 RATE_HZ = 16000
@@ -94,3 +94,19 @@ def test_a_source_that_fails_says_so_and_is_tried_again() -> None:
         time.sleep(0.05)
     assert microphone.failures >= 2 and microphone.state.startswith("LOST: ")
     microphone.stop()
+
+
+def test_numbers_go_on_by_time_when_a_source_came_back() -> None:
+    found: list[Chunk] = []
+    source = "audiotestsrc is-live=true num-buffers=25 samplesperbuffer=160"  # a quarter of a second, then its end
+    microphone = Microphone(source, found.append, rate_hz=RATE_HZ, chunk_s=0.05, retry_s=0.3)
+    microphone.start()
+    end = time.monotonic() + 60.0
+    while microphone.failures < 3 and time.monotonic() < end:
+        time.sleep(0.05)
+    microphone.stop()
+    assert microphone.failures >= 3, microphone.state
+    firsts = np.array([chunk.first for chunk in found])
+    by_time = np.array([chunk.taken_ns - found[0].taken_ns for chunk in found]) * 1e-9 * RATE_HZ
+    assert (np.diff(firsts) > 0.3 * RATE_HZ).sum() >= 2, "the silence in between has numbers too"
+    assert np.abs(firsts - by_time).max() < 0.1 * RATE_HZ

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from saras import ConfigError, Error
-from saras.capture.grabber import gstreamer
+from saras.capture.indexed_file import IndexedFile
 
 Image = npt.NDArray[np.uint8]
 
@@ -24,7 +24,6 @@ CODECS = {
     "h264": "openh264enc bitrate={bitrate} rate-control=bitrate gop-size={gop} complexity=low ! h264parse",
     "ffv1": "avenc_ffv1",
 }
-CLOSE_S = 10
 INDEX_HEAD = "frame,stamp_ns,seq\n"
 
 
@@ -48,35 +47,17 @@ class VideoFile:
             raise ConfigError(f"codec = {codec!r}: must be one of {', '.join(CODECS)}")
         if min(size) < 2 or size[0] % 2 or size[1] % 2:
             raise ConfigError(f"size = {size[0]}x{size[1]}: both must be even and >= 2")
-        for file in (path, index_path(path)):
-            if file.exists():
-                raise VideoError(f"{file}: exists")
         self.path, self.size, self.frames = path, size, 0
-        self._gst = gst = gstreamer()
         encoder = CODECS[codec].format(bitrate=1000 * bitrate_kbit_s, gop=max(1, round(rate_hz)))
-        text = (
-            f"appsrc name=in format=time block=true max-bytes={8 * size[0] * size[1] * 3} ! videoconvert ! {encoder} ! "
-            "matroskamux max-cluster-duration=200000000 ! filesink name=out sync=false buffer-mode=unbuffered"
+        self._file = IndexedFile(
+            path,
+            index_path(path),
+            INDEX_HEAD,
+            caps=f"video/x-raw,format=BGR,width={size[0]},height={size[1]},framerate={round(1000 * rate_hz)}/1000",
+            stages=f"videoconvert ! {encoder} ! matroskamux max-cluster-duration=200000000",
+            error=VideoError,
+            most_bytes=8 * size[0] * size[1] * 3,
         )
-        try:
-            self._pipeline = gst.parse_launch(text)
-        except Exception as error:  # GLib.Error, which only exists once gi is there
-            raise VideoError(f"GStreamer: {getattr(error, 'message', error)}") from None
-        self._pipeline.get_by_name("out").set_property("location", str(path))
-        self._source = self._pipeline.get_by_name("in")
-        caps = f"video/x-raw,format=BGR,width={size[0]},height={size[1]},framerate={round(1000 * rate_hz)}/1000"
-        self._source.set_property("caps", gst.Caps.from_string(caps))
-        self._bus = self._pipeline.get_bus()
-        if self._pipeline.set_state(gst.State.PLAYING) == gst.StateChangeReturn.FAILURE:
-            why = self._failure() or "it cannot be started"
-            self._pipeline.set_state(gst.State.NULL)
-            raise VideoError(f"{path}: {why}")
-        try:
-            self._index = index_path(path).open("w", encoding="utf-8", buffering=1)
-            self._index.write(INDEX_HEAD)
-        except OSError as error:
-            self._pipeline.set_state(gst.State.NULL)
-            raise VideoError(f"{index_path(path)}: {error.strerror}") from None
         self._begin_ns: int | None = None
         self._last_ns = -1
 
@@ -88,16 +69,10 @@ class VideoFile:
         data = pixels if isinstance(pixels, bytes) else np.ascontiguousarray(pixels, np.uint8).tobytes()
         if len(data) != 3 * self.size[0] * self.size[1]:
             raise ConfigError(f"picture of {len(data)} bytes: must be {self.size[0]}x{self.size[1]}x3")
-        if (why := self._failure()) is not None:
-            raise VideoError(f"{self.path}: {why}")
-        self._begin_ns = stamp_ns if self._begin_ns is None else self._begin_ns
-        self._last_ns = max(stamp_ns - self._begin_ns, self._last_ns + 1_000_000)
-        buffer = self._gst.Buffer.new_wrapped(self._padded(data))
-        buffer.pts = self._last_ns
-        if self._source.emit("push-buffer", buffer) != self._gst.FlowReturn.OK:
-            raise VideoError(f"{self.path}: {self._failure() or 'the encoder takes no more'}")
-        number, self.frames = self.frames, self.frames + 1
-        self._index.write(f"{number},{stamp_ns},{seq}\n")
+        begin_ns = stamp_ns if self._begin_ns is None else self._begin_ns
+        at_ns, number = max(stamp_ns - begin_ns, self._last_ns + 1_000_000), self.frames
+        self._file.push(self._padded(data), at_ns, f"{number},{stamp_ns},{seq}\n")
+        self._begin_ns, self._last_ns, self.frames = begin_ns, at_ns, number + 1
         return number
 
     def _padded(self, data: bytes) -> bytes:
@@ -109,22 +84,9 @@ class VideoFile:
         rows[:, :row] = np.frombuffer(data, np.uint8).reshape(self.size[1], row)
         return rows.tobytes()
 
-    def _failure(self) -> str | None:
-        message = self._bus.pop_filtered(self._gst.MessageType.ERROR)
-        return None if message is None else str(message.parse_error()[0].message)
-
     def close(self) -> None:
         """Finishes the file. Raises VideoError when it could not be."""
-        if self._index.closed:
-            return
-        self._index.close()
-        self._source.emit("end-of-stream")
-        wanted = self._gst.MessageType.ERROR | self._gst.MessageType.EOS
-        message = self._bus.timed_pop_filtered(CLOSE_S * self._gst.SECOND, wanted)
-        self._pipeline.set_state(self._gst.State.NULL)
-        if message is None or message.type == self._gst.MessageType.ERROR:
-            why = "it does not end" if message is None else message.parse_error()[0].message
-            raise VideoError(f"{self.path}: {why}")
+        self._file.close()
 
     def __enter__(self) -> VideoFile:
         return self
