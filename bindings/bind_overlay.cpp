@@ -6,7 +6,7 @@
 
 namespace saras::bindings {
 
-ImageView view_of(Pixels& pixels, const std::string& encoding) {
+ImageView view_of(Pixels& pixels, const std::string& encoding, bool drawn_on) {
   ImageView view;
   if (!parse_encoding(encoding, view.format)) {
     throw py::value_error("encoding = '" + encoding + "': must be bgr8, rgb8, mono8, bgra8 or rgba8");
@@ -20,7 +20,8 @@ ImageView view_of(Pixels& pixels, const std::string& encoding) {
     throw py::value_error("image: expected uint8 (height, width" + std::string(n == 1 ? "" : ", " + std::to_string(n)) +
                           ") with dense rows for " + encoding + ", got shape " + shape_text(pixels));
   }
-  view.data = pixels.mutable_data();
+  // A picture that is only looked at may be read-only, as those of a camera are.
+  view.data = drawn_on ? pixels.mutable_data() : const_cast<std::uint8_t*>(pixels.data());
   view.height = static_cast<int>(pixels.shape(0));
   view.width = static_cast<int>(pixels.shape(1));
   view.stride = static_cast<std::size_t>(pixels.strides(0));
@@ -77,7 +78,8 @@ void bind_overlay_camera(py::module_& m) {
 
 void bind_overlay_watch(py::module_& m) {
   m.def(
-      "fingerprint", [](Pixels image, const std::string& encoding) { return fingerprint(view_of(image, encoding)); },
+      "fingerprint",
+      [](Pixels image, const std::string& encoding) { return fingerprint(view_of(image, encoding, false)); },
       py::arg("image"), py::arg("encoding"), "A number that changes when any pixel does.");
   Struct<FrozenWatchConfig>(m, "FrozenWatchConfig", "When a picture counts as frozen.")
       .field("frozen_after_s", &FrozenWatchConfig::frozen_after_s, "the same picture for so long [s]");

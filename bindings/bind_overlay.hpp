@@ -12,7 +12,7 @@ namespace saras::bindings {
 using Pixels = py::array_t<std::uint8_t>;
 
 /// Refuses arrays that do not fit the encoding.
-ImageView view_of(Pixels& pixels, const std::string& encoding);
+ImageView view_of(Pixels& pixels, const std::string& encoding, bool drawn_on = true);
 
 void bind_overlay_camera(py::module_& m);
 void bind_overlay_watch(py::module_& m);

@@ -13,8 +13,9 @@ from std_msgs.msg import String
 
 from saras import ConfigError
 from saras.calibration.camera_info import Eye, right_T_left
-from saras.capture import SOURCES, Frame, FrozenWatch, Grabber, Pairing, halves, source_text
+from saras.capture import SOURCES, Frame, Grabber, Pairing, halves, source_text
 from saras.capture.frames import LAYOUTS
+from saras.overlay import FrozenWatch, FrozenWatchConfig, fingerprint
 from saras_ros1.channel import SIDES
 from saras_ros1.endoscope_frames import EndoscopeFrames
 from saras_ros1.endoscope_output import EyeOutput
@@ -29,7 +30,9 @@ class CapturedEye:
     def __init__(self, side: str, topics: str, quality: int, eye: Eye | None, frozen_s: float) -> None:
         self.side, self.eye = side, eye
         self.output = EyeOutput(side, quality, topics)
-        self.watch = FrozenWatch(frozen_s)
+        # frozen_s 0: still pictures are meant to stay
+        self.watch = FrozenWatch(FrozenWatchConfig(frozen_after_s=frozen_s)) if frozen_s else None
+        self.looked_s = time.monotonic()
         self.status = "STARTING"
         self.shown = 0
         self.wrong_size = ""
@@ -46,7 +49,7 @@ class CapturedEye:
     def show(self, frame: Frame, stamp: rospy.Time) -> bool:
         """Publishes, unless the picture is the one that was there all the time: old data gets no new stamp."""
         size = frame.pixels.shape[1], frame.pixels.shape[0]
-        if self.watch.frozen(frame.pixels, time.monotonic()):
+        if self._frozen(frame):
             self.say("FROZEN")
             return False
         self.say("OK")
@@ -59,6 +62,11 @@ class CapturedEye:
         self.output.picture(frame.pixels, stamp)
         self.shown += 1
         return True
+
+    def _frozen(self, frame: Frame) -> bool:
+        now_s, before_s = time.monotonic(), self.looked_s
+        self.looked_s = now_s
+        return self.watch is not None and self.watch.step(fingerprint(frame.pixels, "bgr8"), now_s - before_s).frozen
 
 
 class EndoscopeCapture(Node):

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from saras import ConfigError
-from saras.capture import Frame, FrozenWatch, Grabber, Pairing, halves, source_text
+from saras.capture import Frame, Grabber, Pairing, halves, source_text
 
 pytest.importorskip("gi")
 cv2 = pytest.importorskip("cv2")
@@ -178,18 +178,6 @@ def test_halves_of_a_picture() -> None:
     assert np.array_equal(np.vstack([top, bottom]), picture) and top.flags.c_contiguous
     with pytest.raises(ConfigError, match="5x4"):
         halves(picture[:, :5], "side_by_side")
-
-
-def test_a_repeated_picture_is_frozen_within_its_time() -> None:
-    rng = np.random.default_rng(1)
-    watch, still = FrozenWatch(0.2), rng.integers(0, 255, (20, 30, 3), dtype=np.uint8)
-    for i in range(10):
-        assert not watch.frozen(rng.integers(0, 255, still.shape, dtype=np.uint8), 0.04 * i)
-    assert [watch.frozen(still.copy(), 0.4 + 0.05 * i) for i in range(6)] == [False] * 4 + [True] * 2
-    changed = still.copy()
-    changed[3, 4, 0] ^= 1  # one bit of one pixel is news
-    assert not watch.frozen(changed, 0.8)
-    assert not any(FrozenWatch(0.0).frozen(still, float(i)) for i in range(5))
 
 
 def test_pairs_are_of_one_moment() -> None:

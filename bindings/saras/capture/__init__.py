@@ -7,8 +7,8 @@
 Needs GStreamer with its Python bindings: python3-gi gir1.2-gstreamer-1.0 gstreamer1.0-plugins-{base,good,bad}.
 """
 
-from saras.capture.frames import FrozenWatch, Pairing, halves
+from saras.capture.frames import Pairing, halves
 from saras.capture.grabber import Frame, Grabber
 from saras.capture.sources import SOURCES, source_text
 
-__all__ = ["SOURCES", "Frame", "FrozenWatch", "Grabber", "Pairing", "halves", "source_text"]
+__all__ = ["SOURCES", "Frame", "Grabber", "Pairing", "halves", "source_text"]

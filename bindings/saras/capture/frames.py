@@ -1,4 +1,4 @@
-"""From frames to pairs: splitting, pairing by time, and noticing that a camera repeats itself."""
+"""From frames to pairs: splitting, and pairing by time. Whether a camera repeats itself: saras.overlay.FrozenWatch."""
 
 from __future__ import annotations
 
@@ -22,25 +22,6 @@ def halves(pixels: Image, layout: str) -> tuple[Image, Image]:
         raise ConfigError(f"{layout} picture is {pixels.shape[1]}x{pixels.shape[0]}: that side must be even")
     first, second = np.split(pixels, 2, axis=axis)
     return np.ascontiguousarray(first), np.ascontiguousarray(second)
-
-
-class FrozenWatch:
-    """Whether pictures still change. frozen_s: unchanged for so long is frozen; 0: never (for still pictures)."""
-
-    def __init__(self, frozen_s: float) -> None:
-        self.frozen_s = frozen_s
-        self._last: Image | None = None
-        self._moved_s = 0.0
-
-    def still_s(self, pixels: Image, now_s: float) -> float:
-        """How long the pictures have been like this one [s]."""
-        if self._last is None or self._last.shape != pixels.shape or not np.array_equal(self._last, pixels):
-            self._last, self._moved_s = pixels, now_s
-        return now_s - self._moved_s
-
-    def frozen(self, pixels: Image, now_s: float) -> bool:
-        """To be called with every picture."""
-        return self.still_s(pixels, now_s) >= self.frozen_s > 0.0
 
 
 class Pairing(Generic[T]):
@@ -68,4 +49,4 @@ class Pairing(Generic[T]):
         return ready
 
 
-__all__ = ["LAYOUTS", "FrozenWatch", "Pairing", "halves"]
+__all__ = ["LAYOUTS", "Pairing", "halves"]
