@@ -6,39 +6,11 @@ import numpy as np
 import rospy
 from sensor_msgs.msg import CameraInfo, Image
 
-from saras import CalibrationError
 from saras.calibration.camera import Intrinsics
 from saras.calibration.camera_info import MODEL, Eye
+from saras.calibration.raw_images import colours, grey
 
-CHANNELS = {"mono8": 1, "bgr8": 3, "rgb8": 3, "bgra8": 4, "rgba8": 4}
-# Rec. 601, as OpenCV turns colours to grey.
-WEIGHTS = {"rgb": (0.299, 0.587, 0.114), "bgr": (0.114, 0.587, 0.299)}
-
-
-def grey(message: Image) -> np.ndarray:
-    """(height, width) of an 8-bit image. Raises CalibrationError for other encodings and sizes that do not fit."""
-    pixels = _pixels(message)
-    if pixels.shape[2] == 1:
-        return np.ascontiguousarray(pixels[:, :, 0])
-    return np.round(pixels[:, :, :3] @ np.array(WEIGHTS[message.encoding[:3]])).astype(np.uint8)
-
-
-def colours(message: Image) -> np.ndarray:
-    """(height, width, 3) BGR of an 8-bit image, or (height, width) of a grey one. Raises as grey does."""
-    pixels = _pixels(message)
-    if pixels.shape[2] == 1:
-        return pixels[:, :, 0]
-    return pixels[:, :, :3] if message.encoding.startswith("bgr") else pixels[:, :, 2::-1]
-
-
-def _pixels(message: Image) -> np.ndarray:
-    channels = CHANNELS.get(message.encoding)
-    if channels is None:
-        raise CalibrationError(f"image encoding = {message.encoding!r}: must be one of {', '.join(CHANNELS)}")
-    if message.step < message.width * channels or len(message.data) < message.step * message.height:
-        raise CalibrationError(f"image of {len(message.data)} bytes: must hold {message.height} rows of {message.step}")
-    rows = np.frombuffer(message.data, np.uint8)[: message.step * message.height].reshape(message.height, message.step)
-    return rows[:, : message.width * channels].reshape(message.height, message.width, channels)
+__all__ = ["camera_info_msg", "colours", "eye_of", "grey", "image_msg", "intrinsics_of"]
 
 
 def intrinsics_of(message: CameraInfo) -> Intrinsics | None:

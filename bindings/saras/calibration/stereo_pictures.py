@@ -10,13 +10,13 @@ import numpy as np
 import numpy.typing as npt
 
 from saras import ConfigError, Error
+from saras.calibration import raw_images
 
 Image = npt.NDArray[np.uint8]
 
 PICTURES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp")
 #: Stamps of the two eyes that are further apart are not of one moment.
 SKEW_S = 0.005
-COLOURS = {"mono8": 1, "8UC1": 1, "bgr8": 3, "rgb8": 3, "bgra8": 4, "rgba8": 4}
 
 
 class Pairs(NamedTuple):
@@ -90,15 +90,7 @@ def _grey(message: Any) -> Image:
         if picture is None:
             raise Error("a compressed picture cannot be decoded")
         return np.asarray(picture, np.uint8)
-    channels = COLOURS.get(message.encoding)
-    if channels is None:
-        raise Error(f"image encoding = {message.encoding!r}: must be one of {', '.join(COLOURS)}")
-    rows = np.asarray(message.data, np.uint8)[: message.step * message.height].reshape(message.height, message.step)
-    pixels = rows[:, : message.width * channels].reshape(message.height, message.width, channels)
-    if channels == 1:
-        return np.ascontiguousarray(pixels[:, :, 0])
-    weights = np.array([0.114, 0.587, 0.299] if message.encoding.startswith("bgr") else [0.299, 0.587, 0.114])
-    return np.asarray(np.round(pixels[:, :, :3] @ weights), np.uint8)
+    return raw_images.grey(message)
 
 
 __all__ = ["Pairs", "from_bag", "from_folders"]
