@@ -43,16 +43,6 @@ def looking(at: np.ndarray, distance: float, elevation: float, azimuth: float, r
     return pose
 
 
-def shaft(tip: np.ndarray, trocar: np.ndarray, jaw: float = 0.0) -> ToolState:
-    """A straight instrument."""
-    z = (tip - trocar) / np.linalg.norm(tip - trocar)
-    x = np.cross([0.31, 0.95, 0.0], z)
-    x /= np.linalg.norm(x)
-    pose = np.eye(4)
-    pose[:3, :3], pose[:3, 3] = np.column_stack([x, np.cross(z, x), z]), tip
-    return ToolState(pose, trocar, jaw)
-
-
 def moments(renderer: StereoRenderer, seed: int) -> Iterator[Moment]:
     """Come near, press up to 10 mm, slide a little, come away; three other tools stand about. The camera drifts."""
     rng = np.random.default_rng([seed, 77])
@@ -76,7 +66,7 @@ def moments(renderer: StereoRenderer, seed: int) -> Iterator[Moment]:
             + rng.uniform(0.025, 0.05) * np.array([np.cos(angle), np.sin(angle), 0.0])
             + np.array([0.0, 0.0, 0.012])
         )
-        others[name] = shaft(
+        others[name] = ToolState.straight(
             place(to_world, tip), place(to_world, tip + 0.08 * np.array([np.cos(angle), np.sin(angle), 1.0]))
         )
     for i in range(FRAMES):
@@ -93,7 +83,7 @@ def moments(renderer: StereoRenderer, seed: int) -> Iterator[Moment]:
             azimuth + share * drift[2],
             roll,
         )
-        tools = {"mesa_left": shaft(world_tip, place(to_world, trocar)), **others}
+        tools = {"mesa_left": ToolState.straight(world_tip, place(to_world, trocar)), **others}
         pair = renderer.render(camera, tools)
         yield Moment(i * FRAME_S, pair, camera, tools, surface.depth(world_tip), surface.normal(world_tip))
 

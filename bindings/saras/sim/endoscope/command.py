@@ -108,7 +108,7 @@ def instruments(place: Scene) -> dict[str, ToolState]:
         if name.startswith("mesa"):
             base = place.world_T(f"{name}/sbs_world")
             trocar = (base @ [*place.arms[name].rcm, 1.0])[:3]
-            tools[name] = _straight(tip, trocar, jaw=0.0 if offset[2] < 0.0 else 0.5)
+            tools[name] = ToolState.straight(tip, trocar, jaw=0.0 if offset[2] < 0.0 else 0.5)
         else:
             base, psm = place.world_T(name), dvrk.psm()
             q = joints_for_tip(psm, np.linalg.inv(base), tip)
@@ -143,12 +143,3 @@ def _camera(size: str) -> StereoCamera:
     if len(parts) != 2 or not all(part.isdigit() for part in parts):
         raise ConfigError(f"--size {size!r}: must be WIDTHxHEIGHT")
     return stereo_camera(int(parts[0]), int(parts[1]))
-
-
-def _straight(tip: Array, trocar: Array, jaw: float) -> ToolState:
-    z = (tip - trocar) / np.linalg.norm(tip - trocar)
-    x = np.cross([0.3, 0.95, 0.1], z)
-    x /= np.linalg.norm(x)
-    pose = np.eye(4)
-    pose[:3, :3], pose[:3, 3] = np.column_stack([x, np.cross(z, x), z]), tip
-    return ToolState(pose, trocar, jaw)

@@ -35,6 +35,16 @@ class ToolState:
     wrist: Array | None = None
     """(3,) end of the straight shaft in world; None: no wrist, the shaft ends at the jaws"""
 
+    @classmethod
+    def straight(cls, tip: Array, trocar: Array, jaw: float = 0.0) -> ToolState:
+        """An instrument without a wrist, from its ends (3,) in world."""
+        z = (tip - trocar) / np.linalg.norm(tip - trocar)
+        x = np.cross([0.31, 0.95, 0.0], z)
+        x /= np.linalg.norm(x)
+        pose = np.eye(4)
+        pose[:3, :3], pose[:3, 3] = np.column_stack([x, np.cross(z, x), z]), tip
+        return cls(pose, trocar, jaw)
+
     @property
     def tip(self) -> Array:
         """(3,) in world."""
