@@ -16,6 +16,7 @@ import yaml
 from rich.console import Console
 
 from saras import ConfigError, Error
+from saras.calibration.calibrate_command import add_guide_arguments
 from saras.calibration.guided import Guide, QuitError, save
 from saras_ros1.calibration_room import CalibrationRoom
 from saras_ros1.params import Params
@@ -32,15 +33,7 @@ def parse(argv: list[str] | None = None) -> argparse.Namespace:
     )
     parser.add_argument("--config", type=Path, default=CONFIG / "calibration.yaml", help="board, arms, topics")
     parser.add_argument("--scene", type=Path, default=CONFIG / "scene.yaml", help="where the bases are expected")
-    parser.add_argument("--rounds", type=int, default=4, help="least touches of each dot (default %(default)s)")
-    parser.add_argument(
-        "--known-to-mm",
-        type=float,
-        default=0.3,
-        help="more touches until the base is known to it (default %(default)s)",
-    )
-    parser.add_argument("--out", type=Path, default=Path("calibration.yaml"), help="default %(default)s")
-    parser.add_argument("--force", action="store_true", help="write over an existing file")
+    add_guide_arguments(parser)
     return parser.parse_args(rospy.myargv(argv)[1:] if argv is None else argv)
 
 

@@ -26,6 +26,19 @@ from saras.calibration.calibration_file import Calibration
 BOUND_M, BOUND_DEG = 1e-3, 0.5
 
 
+def add_guide_arguments(parser: argparse.ArgumentParser) -> None:
+    """Of the guided procedure, in simulation and with real arms: --rounds, --known-to-mm, --out, --force."""
+    parser.add_argument("--rounds", type=int, default=4, help="least touches of each dot (default %(default)s)")
+    parser.add_argument(
+        "--known-to-mm",
+        type=float,
+        default=0.3,
+        help="more touches until the base is known to it (default %(default)s)",
+    )
+    parser.add_argument("--out", type=Path, default=Path("calibration.yaml"), help="default %(default)s")
+    parser.add_argument("--force", action="store_true", help="write over an existing file")
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds simulation, hand-eye and check."""
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
@@ -36,16 +49,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     simulated.add_argument("--board", type=Path, help="its YAML (saras board); default: the standard board")
     simulated.add_argument("--seed", type=int, default=1, help="of the simulated noise (default %(default)s)")
     simulated.add_argument("--touch-noise-m", type=float, default=0.5e-3, help="per axis (default %(default)s)")
-    simulated.add_argument("--rounds", type=int, default=4, help="least touches of each dot (default %(default)s)")
-    simulated.add_argument(
-        "--known-to-mm",
-        type=float,
-        default=0.3,
-        help="more touches until the base is known to it (default %(default)s)",
-    )
     simulated.add_argument("--yes", action="store_true", help="no prompts: take everything")
-    simulated.add_argument("--out", type=Path, default=Path("calibration.yaml"), help="default %(default)s")
-    simulated.add_argument("--force", action="store_true", help="write over an existing file")
+    add_guide_arguments(simulated)
     streams = actions.add_parser("hand-eye", help="of two recorded streams, with their time offset")
     streams.add_argument("robot", type=Path, help="base_T_gripper over time (CSV, or ZIP:MEMBER)")
     streams.add_argument("camera", type=Path, help="camera_T_target over time")
