@@ -20,7 +20,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 from std_msgs.msg import String
-from support import ROOT, Newest, spawn, wait_until
+from support import ROOT, Newest, pair_of_pictures, spawn, wait_until
 
 from saras.sim.endoscope import stereo_camera
 from saras_ros1 import convert
@@ -75,15 +75,8 @@ class Capture(unittest.TestCase):
         )
 
     def pair(self) -> tuple[Image, Image]:
-        for image in self.images.values():
-            image.clear()
-
-        def there() -> tuple[Image, Image] | None:
-            right = {message.header.stamp: message for message in self.images["right"].all}
-            both = [(m, right[m.header.stamp]) for m in self.images["left"].all if m.header.stamp in right]
-            return both[-1] if both else None
-
-        return wait_until(there, lambda: f"two pictures of one stamp; {self.status['left'].message}")
+        left, right = (self.images[side] for side in SIDES)
+        return pair_of_pictures(left, right, what=lambda: self.status["left"].message)
 
     def video(self, name: str, levels: list[tuple[int, int]]) -> str:
         """A side by side video whose halves have grey levels of their own."""

@@ -17,7 +17,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PointStamped, PoseStamped
 from saras_ros1.msg import Contact, ContactQuality
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image
-from support import ROOT, Newest, wait_until
+from support import ROOT, Newest, pair_of_pictures, wait_until
 
 from saras.calibration.camera_info import right_T_left
 from saras.kinematics import scene
@@ -71,15 +71,7 @@ class Endoscope(unittest.TestCase):
 
     def pair(self) -> tuple[Image, Image]:
         """Both pictures of one moment, from now on."""
-        for image in self.images.values():
-            image.clear()
-
-        def there() -> tuple[Image, Image] | None:
-            right = {message.header.stamp: message for message in self.images["right"].all}
-            both = [(m, right[m.header.stamp]) for m in self.images["left"].all if m.header.stamp in right]
-            return both[-1] if both else None
-
-        return wait_until(there, "two pictures with one stamp", PATIENT_S)
+        return pair_of_pictures(self.images["left"], self.images["right"], PATIENT_S)
 
     def test_a_pictures_are_whole_and_of_one_moment(self) -> None:
         left, right = self.pair()

@@ -52,3 +52,16 @@ def spawn(executable, *arguments):
     """Starts a program of the package's devel space (or a path)."""
     path = executable if "/" in str(executable) else ROOT / "devel" / "lib" / "saras_ros1" / executable
     return subprocess.Popen([str(path), *arguments], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+
+def pair_of_pictures(left, right, patience_s=PATIENCE_S, what=""):
+    """Both pictures of one stamp, from now on; left, right: Newest of Image. what: said when none comes."""
+    for image in (left, right):
+        image.clear()
+
+    def there():
+        by_stamp = {message.header.stamp: message for message in list(right.all)}
+        both = [(m, by_stamp[m.header.stamp]) for m in list(left.all) if m.header.stamp in by_stamp]
+        return both[-1] if both else None
+
+    return wait_until(there, lambda: f"two pictures of one stamp {what() if callable(what) else what}", patience_s)
