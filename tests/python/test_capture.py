@@ -140,6 +140,17 @@ def test_silence_is_lost_too() -> None:
     assert taken.states == ["LOST: camera: no picture for 0.3 s"]
 
 
+def test_an_error_of_the_reader_is_said_and_does_not_end_it() -> None:
+    taken = Taken(source_text("test", "ball"), retry_s=0.1)
+    broken = threading.Event()
+    taken.grabber = Grabber("camera", source_text("test", "ball"), lambda frame: 1 // 0 if not broken.is_set()
+                            else taken._on_frame(frame), on_state=taken._on_state, retry_s=0.1)  # fmt: skip
+    with taken:
+        taken.wait(lambda: any("ZeroDivisionError" in state for state in taken.states))
+        broken.set()
+        taken.wait(lambda: taken.frames)
+
+
 def test_sources_as_gstreamer_writes_them() -> None:
     assert source_text("decklink", "1", "mode=1080p25 connection=sdi") == (
         "decklinkvideosrc device-number=1 mode=1080p25 connection=sdi"

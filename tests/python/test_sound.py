@@ -11,23 +11,9 @@ import pytest
 from saras import ConfigError
 
 pytest.importorskip("gi")
-from saras.capture.pulled_pipeline import gstreamer
-from saras.capture.sound import Chunk, Microphone, SoundError, SoundFile, source_text, times_ns
+from saras.capture.sound import Chunk, Microphone, SoundError, SoundFile, read_sound, source_text, times_ns
 
 RATE_HZ = 16000
-
-
-def decoded(path: Path) -> np.ndarray:
-    gst = gstreamer()
-    decoder = "flacparse ! flacdec ! audioconvert ! audio/x-raw,format=S16LE"
-    pipeline = gst.parse_launch(f"filesrc location={path} ! {decoder} ! appsink name=out sync=false")
-    out, parts = pipeline.get_by_name("out"), []
-    pipeline.set_state(gst.State.PLAYING)
-    while (sample := out.emit("pull-sample")) is not None:
-        buffer = sample.get_buffer()
-        parts.append(np.frombuffer(buffer.extract_dup(0, buffer.get_size()), np.int16))
-    pipeline.set_state(gst.State.NULL)
-    return np.concatenate(parts)
 
 
 def heard(source: str, chunks: int) -> list[Chunk]:
@@ -64,7 +50,7 @@ def test_a_file_keeps_every_sample(tmp_path: Path) -> None:
         file.write(samples[done : done + count], round(1e18 + done * 1.001e9 / RATE_HZ + 5e9 * (done > 20000)))
         done += count
     file.close()
-    np.testing.assert_array_equal(decoded(path), samples[:, 0])
+    np.testing.assert_array_equal(read_sound(path), samples)
     for number in (0, 5000, 15000, 30000, 48_122):
         truth_ns = 1e18 + number * 1.001e9 / RATE_HZ + 5e9 * (number > 20000)
         assert abs(int(times_ns(path, [number])[0]) - truth_ns) < 1e9 if 17000 < number < 23000 else 2e7
@@ -84,6 +70,21 @@ def test_what_is_refused(tmp_path: Path) -> None:
     file.close()
     with pytest.raises(SoundError, match="exists"):
         SoundFile(path, RATE_HZ, 2)
+    assert read_sound(path).shape == (3200, 2)
+    with pytest.raises(SoundError, match=r"nothing\.flac"):
+        read_sound(tmp_path / "nothing.flac")
+    (tmp_path / "b.flac").write_bytes(b"no sound")
+    with pytest.raises(SoundError, match=r"b\.flac"):
+        read_sound(tmp_path / "b.flac")
+
+
+def test_the_beep_begins_at_full_seconds() -> None:
+    chunks = heard("beep", 25)
+    samples = np.concatenate([chunk.samples[:, 0] for chunk in chunks]).astype(float)
+    times = np.concatenate([chunk.taken_ns + np.arange(len(chunk.samples)) * 62_500 for chunk in chunks])
+    loud = times[np.abs(samples) > 5000.0] % 10**9
+    assert len(loud) > 1600
+    assert np.percentile(loud, 99.0) < 120_000_000  # a busy machine may hear a block a little later
 
 
 def test_a_source_that_fails_says_so_and_is_tried_again() -> None:

@@ -38,8 +38,8 @@ class PulledPipeline:
 
     sample: a Gst.Sample; taken_ns: when its first part was taken, nanoseconds since the epoch, None: the pipeline does
     not know. A pipeline that fails, ends or is silent for silence_s is started anew after retry_s; loop: one that came
-    to its end begins again at once. awaited: what is missing when it is silent; on_start: a pipeline begins, the first
-    or another one.
+    to its end begins again at once. awaited: what is missing when it is silent; on_start(Gst.Pipeline): one begins,
+    the first or another.
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class PulledPipeline:
         silence_s: float,
         retry_s: float,
         loop: bool = False,
-        on_start: Callable[[], None] = lambda: None,
+        on_start: Callable[[Any], None] = lambda pipeline: None,
         on_state: Callable[[str], None] = lambda state: None,
     ) -> None:
         """ending: from the source's raw data to what is wanted, and the appsink with its properties."""
@@ -77,7 +77,10 @@ class PulledPipeline:
 
     def _run(self) -> None:
         while not self._end.is_set():
-            why = self._play()
+            try:
+                why = self._play()
+            except Exception as error:  # of on_sample: a thread that ends quietly would leave its last word standing
+                why = f"{type(error).__name__}: {error}"
             if self._end.is_set():
                 return
             if why == "end" and self._loop:
@@ -99,10 +102,10 @@ class PulledPipeline:
         except Exception as error:  # GLib.Error, which only exists once gi is there
             return words(error)
         out, bus = pipeline.get_by_name("out"), pipeline.get_bus()
-        self._on_start()
         try:
             if pipeline.set_state(gst.State.PLAYING) == gst.StateChangeReturn.FAILURE:
                 return self._failure(bus) or "it cannot be started"
+            self._on_start(pipeline)
             heard_s = time.monotonic()
             while not self._end.is_set():
                 sample = out.emit("try-pull-sample", POLL_NS)

@@ -10,16 +10,18 @@ from typing import Any
 import numpy as np
 
 from saras import ConfigError
+from saras.capture.beeper import NAME as BEEPER
+from saras.capture.beeper import Beeper
 from saras.capture.chunks import Chunk, Chunker, Samples
 from saras.capture.indexed_file import IndexedFile
-from saras.capture.pulled_pipeline import PulledPipeline
+from saras.capture.pulled_pipeline import PulledPipeline, gstreamer, words
 from saras.capture.sound_index import INDEX_HEAD, SoundError, index_path, times_ns
 
-#: name: pipeline. beep: 880 Hz for a tenth of each second, to hear that it works.
+#: name: pipeline. beep: 880 Hz for the first tenth of each second of the computer's clock (saras.sim.clap).
 SOURCES = {
     "alsa": "alsasrc device={device}",
     "test": "audiotestsrc is-live=true wave=sine freq=440 volume=0.3",
-    "beep": "audiotestsrc is-live=true wave=ticks freq=880 sine-periods-per-tick=88 volume=0.8",
+    "beep": f"appsrc name={BEEPER} is-live=true format=time",
     "silence": "audiotestsrc is-live=true wave=silence",
 }
 
@@ -84,8 +86,10 @@ class Microphone:
         """Ends the pipeline and its thread."""
         self._pipeline.stop()
 
-    def _on_start(self) -> None:
+    def _on_start(self, pipeline: Any) -> None:
         self._begins = True
+        if pipeline.get_by_name(BEEPER) is not None:
+            Beeper(pipeline, self._rate_hz)
 
     def _on_sample(self, sample: Any, taken_ns: int | None) -> None:
         buffer = sample.get_buffer()
@@ -121,8 +125,46 @@ class SoundFile:
         self._file.close()
 
 
+def read_sound(path: Path) -> Samples:
+    """(n, channels) of a file that GStreamer can decode. Raises SoundError."""
+    gst = gstreamer()
+    text = "filesrc name=in ! decodebin ! audioconvert ! audio/x-raw,format=S16LE ! appsink name=out sync=false"
+    pipeline = gst.parse_launch(text)
+    pipeline.get_by_name("in").set_property("location", str(path))
+    out, bus = pipeline.get_by_name("out"), pipeline.get_bus()
+    parts: list[Samples] = []
+    channels, failed = 1, None
+    try:
+        pipeline.set_state(gst.State.PLAYING)
+        while failed is None and not out.get_property("eos"):
+            sample = out.emit("try-pull-sample", 100_000_000)
+            if sample is not None:
+                buffer = sample.get_buffer()
+                channels = sample.get_caps().get_structure(0).get_value("channels")
+                parts.append(np.frombuffer(buffer.extract_dup(0, buffer.get_size()), np.int16))
+            else:
+                failed = bus.pop_filtered(gst.MessageType.ERROR)
+    finally:
+        pipeline.set_state(gst.State.NULL)
+    if failed is not None:
+        raise SoundError(f"{path}: {words(failed.parse_error()[0])}")
+    if not parts:
+        raise SoundError(f"{path}: no sound in it")
+    return np.concatenate(parts).reshape(-1, channels)
+
+
 def _caps(rate_hz: int, channels: int) -> str:
     return f"audio/x-raw,format=S16LE,layout=interleaved,rate={rate_hz},channels={channels}"
 
 
-__all__ = ["SOURCES", "Chunk", "Microphone", "SoundError", "SoundFile", "index_path", "source_text", "times_ns"]
+__all__ = [
+    "SOURCES",
+    "Chunk",
+    "Microphone",
+    "SoundError",
+    "SoundFile",
+    "index_path",
+    "read_sound",
+    "source_text",
+    "times_ns",
+]
