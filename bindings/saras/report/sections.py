@@ -15,6 +15,7 @@ from saras.report.parts import COLORS, both_sides, chart, clutch_bands, table
 from saras.report.passivity import damping, ledger, tanks
 from saras.report.svg import box, text_at
 from saras.report.verdicts import SIDES, Findings
+from saras.report.vision import vision
 
 STATE_CSS = {0: "waiting", 1: "ready", 2: "engaged", 3: "hold"}
 
@@ -27,6 +28,7 @@ def sections(session: Session, found: Findings) -> list[tuple[str, str]]:
         ("Forces", forces),
         ("Distances", distances),
         ("Overlay", overlay),
+        ("Endoscope and contact seen", vision),
         ("Tank energy", tanks),
         ("Energy ledger", ledger),
         ("Damping and reduction", damping),
