@@ -31,8 +31,8 @@ def vision(session: Session, found: Findings) -> str:
     if not rows and not seen:
         return "<p class='note'>No endoscope was recorded.</p>"
     note = (
-        "<p class='note'>Rates of nodes: mean of what they said each second once they had begun. Ages: of the overlay when "
-        "it was published, since its picture was taken; of a recorded picture when the video took it.</p>"
+        "<p class='note'>Rates of nodes: mean of what they said each second once they had begun. Ages: of the overlay "
+        "when it was published, since its picture was taken; of a recorded picture when the video took it.</p>"
     )
     if not seen:
         return html + note + "<p class='note'>Contact by vision was not recorded.</p>"
