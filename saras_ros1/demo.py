@@ -55,6 +55,11 @@ def parse(argv: list[str] | None = None) -> argparse.Namespace:
     parser.add_argument(
         "--endoscope", action="store_true", help="with a simulated stereo endoscope, overlay and seen contact"
     )
+    parser.add_argument(
+        "--claps",
+        action="store_true",
+        help="--endoscope, and a flash, a beep and a jump of PSM1 at each full second, for saras bag align",
+    )
     parser.add_argument("--seed", type=int, default=1, help="of everything random in the simulation")
     arguments = parser.parse_args(argv)
     if arguments.duration is not None and not 0 < arguments.duration <= 86400:
@@ -84,7 +89,9 @@ def launch_arguments(arguments: argparse.Namespace, out: Path) -> dict[str, str]
         "arm_port_left": str(left),
         "arm_port_right": str(right),
     }
-    if arguments.endoscope:
+    if arguments.claps:
+        wanted["claps"] = "true"
+    if arguments.endoscope or arguments.claps:
         wanted.update(endoscope="sim", overlay="true", contact="true")
     if arguments.motion:
         wanted["motion"] = arguments.motion

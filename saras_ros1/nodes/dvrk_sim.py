@@ -139,7 +139,7 @@ class DvrkSim(Node):
         now = time.monotonic()
         with self.lock:
             dt, self._last_s = min(now - self._last_s, DT_MAX_S), now
-            self._time_s += dt
+            self._time_s = time.time() if self.surgeon.mode == "clap" else self._time_s + dt
             if self._ticks % LOOK_EVERY == 0 and self.surgeon.mode == "meet":
                 self._look()
             for name, arm in self.arms.items():
@@ -167,7 +167,9 @@ class DvrkSim(Node):
             return
         tip = self.surgeon.tip(name, self._time_s, self._targets.get(name), self._targets.get("bones"))
         q = joints_for_tip(sim.kinematics, arm.base_T_world, tip)
-        if not np.array_equal(q, sim.joints.q):
+        if self.surgeon.mode == "clap":
+            sim.joints.put(q)  # a step: nothing follows behind
+        elif not np.array_equal(q, sim.joints.q):
             sim.follow(q)
 
     def _look(self) -> None:

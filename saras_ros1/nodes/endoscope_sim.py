@@ -10,6 +10,7 @@ from sensor_msgs.msg import Image
 
 from saras import ConfigError, Error
 from saras.kinematics.scene import pose_from_xyz_rpy
+from saras.sim import clap
 from saras.sim.endoscope import Room, StereoRenderer, stereo_camera
 from saras.sim.endoscope.window import check_drawing
 from saras_ros1.camera_images import image_msg
@@ -40,6 +41,7 @@ class EndoscopeSim(Node):
             "render_scale": self.params.number("render_scale", 0.5, 4.0),
         }
         self.unseen = self.params.flag("render_unseen")
+        self.claps = self.params.flag("claps")
         self.live = LiveFrames(self.params.number("transform_timeout_s", 0.005, 2.0))
         self.frames = EndoscopeFrames(self, self.params.section("mount"))
         self.params.finish()
@@ -91,9 +93,10 @@ class EndoscopeSim(Node):
             self.why = "nobody looks"
             return
         begin = time.perf_counter()
-        pair = self.renderer.render(world_T_left, self.tools.states())
+        tools, flash = self.tools.states(), self.claps and clap.is_on(time.time_ns())
+        pair = self.renderer.render(world_T_left, tools)
         for output, pixels in zip(self.eyes, (pair.left, pair.right)):
-            output.picture(pixels, stamp)
+            output.picture(pixels // 2 + 128 if flash else pixels, stamp)
         if truth:
             self._publish_truth(stamp)
         took = time.perf_counter() - begin

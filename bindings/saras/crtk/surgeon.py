@@ -10,10 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from saras.console.motion import minimum_jerk
+from saras.sim import clap
 
 Array = npt.NDArray[np.float64]
 
-MODES = ("rest", "circle", "reach", "meet")
+MODES = ("rest", "circle", "reach", "meet", "clap")
 
 CIRCLE_M, CIRCLE_HZ = 0.02, 0.1
 REACH_M, REACH_S = 0.03, 5.0
@@ -37,8 +38,14 @@ class Surgeon:
         self._targets = {name: random.uniform(-REACH_M, REACH_M, (16, 3)) for name in homes}
 
     def tip(self, name: str, t: float, tool: Array | None = None, bone: Array | None = None) -> Array:
-        """(3,) where the arm's tip should be at t [s]. tool, bone: what `meet` goes to, (3,) in world, if known."""
+        """(3,) where the arm's tip should be at t [s]. tool, bone: what `meet` goes to, (3,) in world, if known.
+
+        clap: t is the time of day; PSM1 jumps up for a moment at each full second (saras.sim.clap).
+        """
         home = self.homes[name]
+        if self.mode == "clap":
+            lifted = name == "PSM1" and clap.is_on(round(1e9 * t))
+            return home + np.array([0.0, 0.0, clap.LIFT_M]) if lifted else home
         if self.mode == "rest" or (self.mode == "meet" and name.startswith("ECM")):
             return home
         if self.mode == "circle":

@@ -4,6 +4,7 @@ saras bag info session.bag                                          what is in i
 saras bag check session.bag --topics config/record_topics.yaml      exit code 1 when something is lost
 saras bag repair session.bag.active                                 of a killed recorder, or a copy that was cut
 saras bag report session.bag                                        as saras report
+saras bag align session.bag                                         video, motion and sound at simulated claps
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from saras.recording.survey import Survey, survey
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Adds info, check, repair, report."""
+    """Adds info, check, repair, report, align."""
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
     info = actions.add_parser("info", help="duration, size; a topic's type, number, rate and age")
     checking = actions.add_parser("check", help="completeness, gaps, rates, order and steps of stamps, ages")
@@ -54,10 +55,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     report = actions.add_parser("report", help="the HTML report of saras report")
     report.add_argument("file", type=Path, nargs="+", metavar="FILE")
     report.add_argument("--out", type=Path, help="the HTML file; default: beside the bag")
+    aligned = actions.add_parser("align", help="how far apart video, motion and sound show the claps of claps:=true")
+    aligned.add_argument("file", type=Path, nargs="+", metavar="FILE", help="bags with video and sound beside them")
+    aligned.add_argument("--arm", default="PSM1", help="whose /ARM/measured_cp jumps (default %(default)s)")
+    aligned.add_argument("--json", action="store_true", help="as JSON")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Exit code 1: ``check`` found something bad. Refused files are a saras.Error."""
+    """Exit code 1: ``check`` or ``align`` found something bad. Refused files are a saras.Error."""
     if len(arguments.file) > 1 and getattr(arguments, "out", None) is not None:
         raise Error("--out goes with one file only")
     if arguments.action == "info":
@@ -66,6 +71,8 @@ def run(arguments: argparse.Namespace) -> int:
         return _check(arguments)
     if arguments.action == "repair":
         return _repair(arguments)
+    if arguments.action == "align":
+        return _align(arguments)
     from saras.report import command as report
 
     for file in arguments.file:
@@ -176,6 +183,20 @@ def _repair(arguments: argparse.Namespace) -> int:
                 print(f"{file}: was whole, nothing to mend")
             print("\n  ".join(done.lines()))
     return 0
+
+
+def _align(arguments: argparse.Namespace) -> int:
+    from saras.recording.alignment import measure
+
+    found = {file: measure(file, arguments.arm) for file in arguments.file}
+    if arguments.json:
+        every = [{"file": str(file), **one.facts()} for file, one in found.items()]
+        print(json.dumps(every if len(every) > 1 else every[0], indent=1))
+    else:
+        for file, one in found.items():
+            print("\n".join(one.lines()))
+            print(f"{file}: {'aligned' if one.within_a_frame else 'not aligned'} within one picture")
+    return 0 if all(one.within_a_frame for one in found.values()) else 1
 
 
 @contextmanager
