@@ -6,6 +6,8 @@ happens in one thread of its own, with timeouts; a hung master or node costs thi
 
 from __future__ import annotations
 
+import math
+import shlex
 import socket
 import threading
 import time
@@ -19,7 +21,7 @@ from std_msgs.msg import String
 from std_srvs.srv import Trigger, TriggerResponse
 
 from saras.net import ntp
-from saras_ros1 import clock_watch, graph_exposure, link_test
+from saras_ros1 import chrony_tracking, clock_watch, graph_exposure, link_test
 from saras_ros1.clock_watch import Address, ClockWatch
 from saras_ros1.graph_calls import CallError, Calls, Pair
 from saras_ros1.graph_exposure import Exposure
@@ -29,6 +31,7 @@ from saras_ros1.node import Node, run
 from saras_ros1.params import Params
 
 MOST_SAID = 5  #: lines in the log about links of one test; /diagnostics has them all
+THIS = "this computer"  #: its clock, as chrony on it says
 FIRST_QUESTIONS = 4  #: for the time, so that the first estimate is already a good one
 
 
@@ -48,6 +51,8 @@ class GraphWatch(Node):
         self.closed_interfaces = self.params.texts("closed_interfaces")
         self.ros_clock_limit_s = self.params.number("ros_clock_limit_s", 1e-4, 60.0)
         self.clock_limit_s = self.params.number("clock_limit_s", 1e-4, 3600.0)
+        self.chronyc = shlex.split(self.params.text("chronyc"))
+        self.chrony_limit_s = self.params.number("chrony_limit_s", 1e-6, 10.0)
         hosts = self.params.text("clock_hosts", empty=True)
         self.given_clocks = clock_watch.parse_hosts(hosts, f"{self.name}/clock_hosts")
         must_flow = self.params.texts("must_flow")
@@ -65,6 +70,7 @@ class GraphWatch(Node):
         self._wires: list[tuple[str, Address, bool]] = []
         self._exposure_said: Exposure | None = None
         self._late_clocks: set[str] = set()
+        self.tracking: chrony_tracking.Tracking | None = None
         self._all_anew = threading.Event()
         self._done = threading.Condition()
         self._rounds = 0
@@ -178,7 +184,10 @@ class GraphWatch(Node):
         for name, (where, _) in hosts.items():
             self.clocks.look(where, 1 if name in self.clock_hosts else FIRST_QUESTIONS)
         self.clock_hosts = hosts
-        for name in hosts:
+        self.tracking = chrony_tracking.ask(self.chronyc)
+        if self.tracking is None and any(in_graph for _, in_graph in hosts.values()):
+            self.tracking = chrony_tracking.unknown("chrony is not installed here, and the graph has other hosts")
+        for name in [*hosts, *([THIS] if self.tracking is not None else [])]:
             level, text, _ = self._clock(name)
             late = level == DiagnosticStatus.WARN
             if late and name not in self._late_clocks:
@@ -194,7 +203,27 @@ class GraphWatch(Node):
             if not is_local(numeric):
                 yield host, (numeric, ntp.PORT)
 
+    def _own_clock(self) -> tuple[int, str, dict]:
+        """What chrony says here; without chrony and other hosts nothing needs this clock to be right."""
+        said, limit_s = self.tracking, self.chrony_limit_s
+        text = chrony_tracking.words(said)
+        if math.isnan(said.offset_s):
+            return DiagnosticStatus.STALE, text, {}
+        late = chrony_tracking.beyond(said, limit_s)
+        values = {
+            "offset_s": f"{said.offset_s:.9f}",
+            "rms_s": f"{said.rms_s:.9f}",
+            "error_ms": f"{1e3 * said.error_s:.3f}",
+            "limit_s": limit_s,
+            "source": said.source,
+            "stratum": said.stratum,
+        }
+        text += f"; more than {1e3 * limit_s:g} ms" if late else ""
+        return DiagnosticStatus.WARN if late else DiagnosticStatus.OK, text, values
+
     def _clock(self, name: str) -> tuple[int, str, dict]:
+        if name == THIS:
+            return self._own_clock()
         where, in_graph = self.clock_hosts[name]
         said = self.clocks.said(where)
         text = clock_watch.words(said)
@@ -227,7 +256,7 @@ class GraphWatch(Node):
         prefix = "" if self.name == "/graph_watch" else f" seen by {self.name.lstrip('/')}"
         self._publish(f"graph ports{prefix}", *self._ports())
         self._publish(f"graph links{prefix}", *self._links())
-        for name in list(self.clock_hosts):
+        for name in [*self.clock_hosts, *([THIS] if self.tracking is not None else [])]:
             self._publish(f"clock of {name}{prefix}", *self._clock(name))
 
     def _ports(self) -> tuple[int, str, dict]:
