@@ -39,6 +39,7 @@ class Side:
         self.guard = Latest(f"/port_guard_{side}/state", TankState)
         self.trail: deque = deque(maxlen=markers.TRAIL_POINTS)
         self.arm_out = node.output(f"/visualization/mesa_{side}/joint_states", JointState)
+        self.passive_out = node.output(f"/visualization/mesa_{side}/passive/joint_states", JointState)
         self.console_out = node.output(f"/visualization/{self.console}/joint_states", JointState)
 
     def publish_joints(self) -> None:
@@ -46,7 +47,13 @@ class Side:
         now = rospy.Time.now()
         arm, tool = self.arm_joints.value(), self.tool.value()
         if arm is not None:
-            message = JointState(name=list(arm.name), position=list(arm.position))
+            # Each description gets its own joints: robot_state_publisher warns of others.
+            by_name = dict(zip(arm.name, arm.position))
+            passive = [name for name in arm.name if "/passive_" in name]
+            stand = JointState(name=passive, position=[by_name.pop(name) for name in passive])
+            stand.header.stamp = now
+            self.passive_out.publish(stand)
+            message = JointState(name=list(by_name), position=list(by_name.values()))
             if tool is not None and len(tool.position) > 1:
                 message.name.append(f"mesa_{self.side}/jaw")
                 message.position.append(tool.position[1])
