@@ -21,7 +21,7 @@ XmlRpc::XmlRpcValue Parameters::value(const std::string& name, const char* kind)
   if (!handle_.getParam(name, value)) {
     throw saras::ConfigError(path(name) + ": missing (" + kind + ")");
   }
-  read_.insert(name.substr(0, name.find('/')));
+  read_.insert(name);
   return value;
 }
 
@@ -64,6 +64,14 @@ std::string Parameters::text(const std::string& name) {
   return static_cast<std::string>(found);
 }
 
+std::string Parameters::text_or_empty(const std::string& name) {
+  XmlRpc::XmlRpcValue found = value(name, "text");
+  if (found.getType() != XmlRpc::XmlRpcValue::TypeString) {
+    throw saras::ConfigError(path(name) + " = " + text_of(found) + ": must be text");
+  }
+  return static_cast<std::string>(found);
+}
+
 std::string Parameters::choice(const std::string& name, const std::set<std::string>& choices) {
   const std::string found = text(name);
   if (choices.count(found) == 0) {
@@ -92,15 +100,25 @@ std::vector<std::string> Parameters::texts(const std::string& name) {
   return texts;
 }
 
-void Parameters::finish() const {
-  XmlRpc::XmlRpcValue all;
-  if (!handle_.getParam(handle_.getNamespace(), all) || all.getType() != XmlRpc::XmlRpcValue::TypeStruct) {
-    return;
-  }
-  for (const auto& [name, unused] : all) {
-    if (read_.count(name) == 0) {
+void Parameters::refuse_unread(XmlRpc::XmlRpcValue& section, const std::string& prefix) const {
+  for (auto& [key, entry] : section) {
+    const std::string name = prefix + key, inside = name + "/";
+    if (read_.count(name) != 0) {
+      continue;
+    }
+    const auto first = read_.lower_bound(inside);
+    const bool read_inside = first != read_.end() && first->compare(0, inside.size(), inside) == 0;
+    if (!read_inside || entry.getType() != XmlRpc::XmlRpcValue::TypeStruct) {
       throw saras::ConfigError(path(name) + ": unknown parameter");
     }
+    refuse_unread(entry, inside);
+  }
+}
+
+void Parameters::finish() const {
+  XmlRpc::XmlRpcValue all;
+  if (handle_.getParam(handle_.getNamespace(), all) && all.getType() == XmlRpc::XmlRpcValue::TypeStruct) {
+    refuse_unread(all, "");
   }
 }
 

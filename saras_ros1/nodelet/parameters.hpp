@@ -17,17 +17,19 @@ class Parameters {
   int integer(const std::string& name, int low, int high);
   bool flag(const std::string& name);
   std::string text(const std::string& name);
+  std::string text_or_empty(const std::string& name);
   std::string choice(const std::string& name, const std::set<std::string>& choices);
   std::vector<std::string> texts(const std::string& name);
-  /// Refuses keys that nobody has read: a typo, mostly.
+  /// Refuses keys that nobody has read, nested ones too: a typo, mostly.
   void finish() const;
 
  private:
   XmlRpc::XmlRpcValue value(const std::string& name, const char* kind);
+  void refuse_unread(XmlRpc::XmlRpcValue& section, const std::string& prefix) const;
   std::string path(const std::string& name) const { return handle_.getNamespace() + "/" + name; }
 
   ros::NodeHandle handle_;
-  std::set<std::string> read_;
+  std::set<std::string> read_;  // a/b for b in the section a
 };
 
 }  // namespace saras_ros1
