@@ -1,4 +1,4 @@
-"""What an endoscope publishes for each eye: image_raw, image_raw/compressed, camera_info."""
+"""What the simulated endoscope publishes for each eye: image_raw, image_raw/compressed, camera_info."""
 
 from __future__ import annotations
 
@@ -18,10 +18,9 @@ QUEUE = 2
 class EyeOutput:
     """Publishers of one side, "left" or "right"; images are built only for readers."""
 
-    def __init__(self, side: str, jpeg_quality: int, topics: str = "/endoscope") -> None:
-        """topics: what the names of its topics begin with."""
+    def __init__(self, side: str, jpeg_quality: int) -> None:
         self.side, self.frame, self._quality = side, OPTICAL[side], jpeg_quality
-        base = f"{topics}/{side}"
+        base = f"/endoscope/{side}"
         self._image = rospy.Publisher(f"{base}/image_raw", Image, queue_size=QUEUE)
         self._jpeg = rospy.Publisher(f"{base}/image_raw/compressed", CompressedImage, queue_size=QUEUE)
         self._info = rospy.Publisher(f"{base}/camera_info", CameraInfo, queue_size=QUEUE)

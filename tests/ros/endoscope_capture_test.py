@@ -34,17 +34,21 @@ class Capture(unittest.TestCase):
     def setUpClass(cls) -> None:
         rospy.init_node("endoscope_capture_test")
         cls.folder = Path(tempfile.mkdtemp())
-        cls.config = yaml.safe_load((ROOT / "config" / "endoscope.yaml").read_text())["endoscope_capture"]
+        config = yaml.safe_load((ROOT / "config" / "endoscope.yaml").read_text())
+        cls.config, cls.frames_config = config["endoscope_capture"], config["endoscope_frames"]
 
     @classmethod
     def tearDownClass(cls) -> None:
         shutil.rmtree(cls.folder, ignore_errors=True)
 
     def setUp(self) -> None:
-        self.process = None
+        self.process = self.frames = None
 
     def tearDown(self) -> None:
         self.end()
+        if self.frames is not None:
+            self.frames.send_signal(signal.SIGINT)
+            self.frames.communicate(timeout=30)
 
     def end(self) -> str:
         """Ends the node; what it printed."""
@@ -66,6 +70,11 @@ class Capture(unittest.TestCase):
         self.infos = {side: Newest(f"/{name}/{side}/camera_info", CameraInfo) for side in SIDES}
         self.status = {side: Newest(f"/{name}/{side}/status", String) for side in SIDES}
         self.process = spawn("endoscope_capture", f"__name:={name}")
+
+    def place(self, name: str) -> None:
+        """Starts endoscope_frames beside /name."""
+        rospy.set_param(f"/{name}_frames", {**self.frames_config, "topics": f"/{name}"})
+        self.frames = spawn("endoscope_frames", f"__name:={name}_frames")
 
     def await_status(self, side: str, *words: str) -> None:
         seen = self.status[side]
@@ -126,6 +135,7 @@ class Capture(unittest.TestCase):
             skew_s=0.06,
             camera_info={side: str(self.folder / f"{side}.yaml") for side in SIDES},
         )
+        self.place("cap_two")
         pose = rospy.Publisher("/ECM/measured_cp", PoseStamped, queue_size=1)
         state = rospy.Publisher("/ECM/operating_state", OperatingState, queue_size=1, latch=True)
         state.publish(OperatingState(state="ENABLED", is_homed=True))
@@ -199,12 +209,63 @@ class Capture(unittest.TestCase):
             ({"camera_info": {"left": "left.yaml", "right": ""}}, "camera_info/left"),
             ({"camera_info": {"left": str(self.folder / "none.yaml"), "right": ""}}, "none.yaml"),
             ({"frozen_s": -1.0}, "frozen_s"),
+            ({"frozne_s": 0.2}, "frozne_s: unknown"),
+            ({"left": {"source": "test", "device": "", "options": "", "optoins": ""}}, "left/optoins: unknown"),
+            ({"left": {"source": "decklink", "device": "front", "options": ""}}, "/cap_bad/left: device = 'front'"),
+            ({"camera_info": {"left": str(ROOT / "config" / "endoscope.yaml"), "right": ""}}, "no camera_info in it"),
+            ({"width": 640}, "height"),
         ):
             self.capture("cap_bad", **changes)
             output, _ = self.process.communicate(timeout=60)
             self.assertEqual(self.process.returncode, 2, output)
             self.assertIn(words, output)
             self.process = None
+
+    def test_h_devices_out_of_step_keep_their_own_stamps(self) -> None:
+        source = {"source": "test", "device": "ball", "options": ""}
+        two = {"layout": "two_devices", "left": source, "right": source, "width": 64, "height": 48, "rate_hz": 20.0}
+        self.capture("cap_apart", **two, skew_s=0.0)
+        wait_until(lambda: all(len(self.images[side].all) >= 10 for side in SIDES), "pictures of both")
+        stamps = [{message.header.stamp.to_nsec() for message in self.images[side].all} for side in SIDES]
+        self.assertFalse(stamps[0] & stamps[1])
+        for side in SIDES:
+            self.await_status(side, "OK")
+            in_order = [message.header.stamp for message in self.images[side].all]
+            self.assertEqual(in_order, sorted(in_order))
+
+    def test_i_a_late_picture_has_the_place_of_its_own_time(self) -> None:
+        """The arm moves at 0.2 m/s: in the second by which the device delays its pictures, 0.2 m."""
+        source = {"source": "test", "device": "ball", "options": ""}
+        self.capture("cap_late", left=source, width=64, height=24, rate_hz=10.0, latency_s=1.0)
+        self.place("cap_late")
+        pose = rospy.Publisher("/ECM/measured_cp", PoseStamped, queue_size=1)
+        state = rospy.Publisher("/ECM/operating_state", OperatingState, queue_size=1, latch=True)
+        state.publish(OperatingState(state="ENABLED", is_homed=True))
+        begin = rospy.Time.now()
+
+        def at(time: rospy.Time) -> float:
+            return 0.2 * (time - begin).to_sec()
+
+        def send(_: object) -> None:
+            now, place = rospy.Time.now(), np.eye(4)
+            place[1, 3] = at(now)
+            pose.publish(convert.pose_msg(place, "ECM", now))
+
+        timer = rospy.Timer(rospy.Duration(0.02), send)
+        tf = tf2_ros.Buffer()
+        tf2_ros.TransformListener(tf)
+        off: list[float] = []
+
+        def near() -> bool:
+            stamp = self.images["left"].next().header.stamp
+            if at(stamp) > 0.2 and tf.can_transform("ECM", "endoscope_left_optical", stamp):
+                found = tf.lookup_transform("ECM", "endoscope_left_optical", stamp)
+                off.append(abs(found.transform.translation.y - at(stamp)))
+            return len(off) >= 10
+
+        wait_until(near, lambda: f"transforms for the pictures; {off}")
+        timer.shutdown()
+        self.assertLess(np.median(off), 0.04, off)
 
 
 if __name__ == "__main__":
