@@ -45,14 +45,27 @@ void begin_gstreamer() {
   }
 }
 
-/// A sentence without its full stop, and the error freed.
-std::string words(GError* error) {
-  std::string text = error != nullptr ? error->message : "no reason given";
-  g_clear_error(&error);
+/// A sentence without its full stop.
+std::string sentence(std::string text) {
   while (!text.empty() && (text.back() == '.' || text.back() == ' ' || text.back() == '\n')) {
     text.pop_back();
   }
   return text;
+}
+
+/// What an error says; frees it.
+std::string words(GError* error) {
+  std::string text = sentence(error != nullptr ? error->message : "no reason given");
+  g_clear_error(&error);
+  return text;
+}
+
+/// The last line of what GStreamer tells developers: which file or device it was.
+std::string detail(gchar* debug) {
+  const std::string all = debug != nullptr ? debug : "";
+  g_free(debug);
+  const std::size_t line = all.find_last_of('\n');
+  return line == std::string::npos ? "" : sentence(all.substr(line + 1));
 }
 
 /// What ended the pipeline, if something did.
@@ -66,8 +79,11 @@ std::optional<std::string> failure(GstBus* bus) {
     return kEnd;
   }
   GError* error = nullptr;
-  gst_message_parse_error(message.get(), &error, nullptr);
-  return std::string(GST_OBJECT_NAME(GST_MESSAGE_SRC(message.get()))) + ": " + words(error);
+  gchar* debug = nullptr;
+  gst_message_parse_error(message.get(), &error, &debug);
+  const std::string more = detail(debug);
+  return std::string(GST_OBJECT_NAME(GST_MESSAGE_SRC(message.get()))) + ": " + words(error) +
+         (more.empty() ? "" : ": " + more);
 }
 
 /// A pipeline that is stopped when it goes out of scope, whatever happens.
@@ -178,7 +194,12 @@ void Grabber::wait_to_retry() {
 void Grabber::run() {
   while (!ends_) {
     const std::uint64_t before = pictures_;
-    const std::string why = play();
+    std::string why;
+    try {
+      why = play();
+    } catch (const std::exception& error) {  // of a callback: it must not end the process, and the others in it
+      why = error.what();
+    }
     if (ends_) {
       return;
     }

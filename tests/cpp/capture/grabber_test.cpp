@@ -9,6 +9,7 @@
 #include <condition_variable>
 #include <filesystem>
 #include <mutex>
+#include <stdexcept>
 #include <vector>
 
 #include "capture_source.hpp"
@@ -213,8 +214,10 @@ TEST_F(GrabberFiles, AMissingFileIsNamedAndFoundWhenItComes) {
 }
 
 TEST_F(GrabberFiles, WhatIsNotThereIsLostWithItsName) {
-  const std::vector<std::array<std::string, 3>> absent = {
-      {"v4l2", "/dev/video77", "/dev/video77"}, {"pipeline", "nosuchelement", "nosuchelement"}, {"decklink", "0", ""}};
+  const std::vector<std::array<std::string, 3>> absent = {{"v4l2", "/dev/video77", "/dev/video77"},
+                                                          {"file", "/nowhere/none.avi", "/nowhere/none.avi"},
+                                                          {"pipeline", "nosuchelement", "nosuchelement"},
+                                                          {"decklink", "0", ""}};
   for (const auto& [kind, device, word] : absent) {
     GrabberConfig config = reading(kind, device);
     config.silence_s = 5.0;
@@ -234,6 +237,26 @@ TEST_F(GrabberFiles, SilenceIsLostToo) {
   Taken taken(config);
   ASSERT_TRUE(taken.wait([&] { return !taken.states.empty(); }));
   EXPECT_EQ(taken.states[0], "LOST: camera: no picture for 0.3 s");
+}
+
+TEST_F(GrabberFiles, AReaderThatThrowsIsSaidAndAskedAgain) {
+  std::mutex mutex;
+  std::condition_variable news;
+  std::vector<std::string> states;
+  GrabberConfig config = reading("test", "ball");
+  config.name = "camera";
+  config.retry_s = 0.05;
+  Grabber grabber(
+      config, [n = 0](const Picture&) mutable { n++ == 0 ? throw std::runtime_error("no room") : void(); },
+      [&](const std::string& state) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        states.push_back(state);
+        news.notify_all();
+      });
+  grabber.start();
+  std::unique_lock<std::mutex> lock(mutex);
+  ASSERT_TRUE(news.wait_for(lock, kPatience, [&] { return states.size() >= 3; }));
+  EXPECT_EQ(states, (std::vector<std::string>{"OK", "LOST: camera: no room", "OK"}));
 }
 
 TEST_F(GrabberFiles, NothingComesAfterStop) {
