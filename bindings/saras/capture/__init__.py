@@ -1,14 +1,8 @@
-"""Pictures of a real endoscope through GStreamer: Blackmagic DeckLink, V4L2, image and video files, or any pipeline.
+"""Sound and videos through GStreamer: a microphone, and the files that stand beside a bag. Import what is needed.
 
-    grabber = Grabber("left eye", source_text("v4l2", "/dev/video0"), on_frame)
-    grabber.start()                                       # on_frame(Frame) from the grabber's thread
-    grabber.state                                         # "OK", or what is wrong; it tries again by itself
+    saras.capture.sound          Microphone, SoundFile, times_ns
+    saras.capture.video_file     VideoFile, read_index
 
 Needs GStreamer with its Python bindings: python3-gi gir1.2-gstreamer-1.0 gstreamer1.0-plugins-{base,good,bad}.
+Pictures of a real endoscope come from the C++ nodelet endoscope_capture (docs/endoscope.md).
 """
-
-from saras.capture.frames import Pairing, halves
-from saras.capture.grabber import Frame, Grabber
-from saras.capture.sources import SOURCES, source_text
-
-__all__ = ["SOURCES", "Frame", "Grabber", "Pairing", "halves", "source_text"]

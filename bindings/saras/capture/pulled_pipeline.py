@@ -37,9 +37,8 @@ class PulledPipeline:
     """Runs `source ! ending ! appsink` and calls on_sample(sample, taken_ns) from its own thread, until stopped.
 
     sample: a Gst.Sample; taken_ns: when its first part was taken, nanoseconds since the epoch, None: the pipeline does
-    not know. A pipeline that fails, ends or is silent for silence_s is started anew after retry_s; loop: one that came
-    to its end begins again at once. awaited: what is missing when it is silent; on_start(Gst.Pipeline): one begins,
-    the first or another.
+    not know. A pipeline that fails, ends or is silent for silence_s is started anew after retry_s. awaited: what is
+    missing when it is silent; on_start(Gst.Pipeline): one begins, the first or another.
     """
 
     def __init__(
@@ -52,14 +51,13 @@ class PulledPipeline:
         awaited: str,
         silence_s: float,
         retry_s: float,
-        loop: bool = False,
         on_start: Callable[[Any], None] = lambda pipeline: None,
         on_state: Callable[[str], None] = lambda state: None,
     ) -> None:
         """ending: from the source's raw data to what is wanted, and the appsink with its properties."""
         self.name, self.failures, self.state = name, 0, "STARTING"
         self._text = f"{source} ! {ending} name=out"
-        self._awaited, self._silence_s, self._retry_s, self._loop = awaited, silence_s, retry_s, loop
+        self._awaited, self._silence_s, self._retry_s = awaited, silence_s, retry_s
         self._on_sample, self._on_start, self._on_state = on_sample, on_start, on_state
         self._end = threading.Event()
         self._gst = gstreamer()
@@ -83,8 +81,6 @@ class PulledPipeline:
                 why = f"{type(error).__name__}: {error}"
             if self._end.is_set():
                 return
-            if why == "end" and self._loop:
-                continue
             self.failures += 1
             self._say(f"LOST: {self.name}: {'the end of it was reached' if why == 'end' else why}")
             self._end.wait(self._retry_s)
