@@ -21,12 +21,17 @@ def index_path(sound: Path) -> Path:
     return sound.with_suffix(".samples.csv")
 
 
-def times_ns(sound: Path, samples: npt.ArrayLike) -> npt.NDArray[np.int64]:
-    """When samples (by number in the file) were taken, nanoseconds since the epoch: between the index's entries."""
+def read_index(sound: Path) -> npt.NDArray[np.int64]:
+    """(n, 2) sample, stamp_ns of a sound's index, n >= 2; a last line that was cut is left out. Raises SoundError."""
     lines = index_path(sound).read_text(encoding="utf-8").split("\n")
     if lines[0] + "\n" != INDEX_HEAD or len(lines) < 4:
         raise SoundError(f"{index_path(sound)}: no index of samples")
-    table = np.array([[int(cell) for cell in line.split(",")] for line in lines[1:-1]], dtype=np.int64)
+    return np.array([[int(cell) for cell in line.split(",")] for line in lines[1:-1]], dtype=np.int64)
+
+
+def times_ns(sound: Path, samples: npt.ArrayLike) -> npt.NDArray[np.int64]:
+    """When samples (by number in the file) were taken, nanoseconds since the epoch: between the index's entries."""
+    table = read_index(sound)
     numbers, stamps = table[:, 0].astype(float), table[:, 1] - table[0, 1]
     asked = np.asarray(samples, dtype=float)
     found = np.interp(asked, numbers, stamps)
@@ -36,4 +41,4 @@ def times_ns(sound: Path, samples: npt.ArrayLike) -> npt.NDArray[np.int64]:
     return whole
 
 
-__all__ = ["INDEX_HEAD", "SoundError", "index_path", "times_ns"]
+__all__ = ["INDEX_HEAD", "SoundError", "index_path", "read_index", "times_ns"]

@@ -22,7 +22,8 @@ from typing import Any
 import numpy as np
 
 from saras import Error
-from saras.recording.completeness import BAD, Bounds, check, expected_topics, lost_by_sequence
+from saras.recording.beside import check_beside
+from saras.recording.completeness import BAD, Bounds, check, expected_topics, lost_by_sequence, worst_first
 from saras.recording.repair import repair
 from saras.recording.survey import Survey, survey
 
@@ -37,6 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action.add_argument("--json", action="store_true", help="as JSON")
     checking.add_argument("--topics", type=Path, metavar="YAML", help="topics that must be there")
     checking.add_argument("--strict", action="store_true", help="exit code 1 for warnings too")
+    checking.add_argument("--quick", action="store_true", help="videos and sound beside the bag are not decoded")
     checking.add_argument("--all", action="store_true", help="every finding, not the worst three of a kind")
     usual = Bounds()
     for name, text in (
@@ -150,16 +152,28 @@ def _check(arguments: argparse.Namespace) -> int:
     with _progress(arguments.file) as track:
         for file in arguments.file:
             found = survey(file, track(file))
-            findings = check(found, expected, bounds)
+            beside = check_beside(file, decode=not arguments.quick)
+            findings = worst_first([*check(found, expected, bounds), *beside.findings])
+            counted = [publisher for publisher in found.publishers if publisher.seq is not None]
+            numbers = {
+                "messages": found.messages,
+                "counted": sum(map(len, counted)),
+                "lost": sum(lost_by_sequence(publisher.seq)[0] for publisher in counted if publisher.seq is not None),
+            }
             grades = {finding.grade for finding in findings}
             good = BAD not in grades and not (arguments.strict and "warning" in grades)
             worst = max(worst, 0 if good else 1)
-            answers.append({"file": str(file), "good": good, "findings": [vars(finding) for finding in findings]})
+            answer: dict[str, Any] = {"file": str(file), "good": good, "numbers": numbers, "beside": beside.lines}
+            answer["findings"] = [vars(finding) for finding in findings]
+            answers.append(answer)
     if arguments.json:
         print(json.dumps(answers if len(answers) > 1 else answers[0], indent=1))
         return worst
     for answer in answers:
+        numbers = answer["numbers"]
         _show(answer["findings"], arguments.all)
+        print(f"{numbers['messages']} messages, {numbers['counted']} of them numbered, {numbers['lost']} lost")
+        print("".join(f"{line}\n" for line in answer["beside"]), end="")
         print(f"{answer['file']}: {'complete' if answer['good'] else 'not complete'}")
     return worst
 

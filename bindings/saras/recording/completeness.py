@@ -41,8 +41,8 @@ class Finding:
     """One thing that was looked at."""
 
     grade: str  #: good, warning, bad, unknown
-    topic: str  #: empty: the file
-    what: str  #: file, topics, lost, gap, rate, order, step, age, future
+    topic: str  #: empty: the file; or a file beside it
+    what: str  #: file, topics, lost, gap, rate, order, step, age, future, video, sound
     text: str
     value: float | None = None
 
@@ -63,6 +63,11 @@ def check(survey: Survey, expected: Iterable[str] | None = None, bounds: Bounds 
         names = sorted(set(uncounted))
         text = f"{len(names)} topics carry no sequence numbers: lost messages cannot be counted ({', '.join(names)})"
         findings.append(Finding(UNKNOWN, "", "lost", text))
+    return worst_first(findings)
+
+
+def worst_first(findings: Iterable[Finding]) -> list[Finding]:
+    """By grade, kind and size."""
     order = {BAD: 0, WARNING: 1, UNKNOWN: 2}
     return sorted(findings, key=lambda finding: (order[finding.grade], finding.what, -abs(finding.value or 0.0)))
 
