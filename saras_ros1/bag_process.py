@@ -6,12 +6,16 @@ import contextlib
 import os
 import shutil
 import signal
+import struct
 import subprocess
 from collections.abc import Sequence
 from pathlib import Path
 
 RECORD = "/usr/lib/rosbag/record"
 STOP_S = 10.0
+TAIL_BYTES = 1 << 16
+#: Head of each message's record: the field's length, its name; seconds and nanoseconds follow (rosbag format 2.0).
+TIME_FIELD = b"\x0d\0\0\0time="
 #: Runs a program until it ends or the input does: who started it may be killed, the bag is closed all the same.
 LEASH = """
 exec 3<&0
@@ -33,6 +37,17 @@ def _quietly() -> list[str]:
     if shutil.which("taskset"):
         words += ["taskset", "-c", str(max(os.sched_getaffinity(0)))]
     return words
+
+
+def newest_time_ns(data: bytes) -> int | None:
+    """The last time of a message in a piece of an uncompressed bag; None: no message begins in it."""
+    at = data.rfind(TIME_FIELD)
+    while at >= 0 and at + len(TIME_FIELD) + 8 > len(data):  # cut off
+        at = data.rfind(TIME_FIELD, 0, at)
+    if at < 0:
+        return None
+    sec, nanosec = struct.unpack_from("<II", data, at + len(TIME_FIELD))
+    return sec * 1_000_000_000 + nanosec
 
 
 class BagProcess:
@@ -86,6 +101,17 @@ class BagProcess:
             except OSError:
                 continue
         return total
+
+    def newest_ns(self) -> int | None:
+        """Reception of the newest message that has reached the file, nanoseconds since the epoch; None: not known."""
+        files = [file for file in self.files() if file.name.endswith(".active")]
+        try:
+            with files[-1].open("rb") as file:
+                file.seek(0, os.SEEK_END)
+                file.seek(max(0, file.tell() - TAIL_BYTES))
+                return newest_time_ns(file.read())
+        except (IndexError, OSError):
+            return None
 
     def unfinished(self) -> list[Path]:
         """Files that were not closed: `saras bag repair` mends them."""

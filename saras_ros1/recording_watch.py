@@ -16,21 +16,26 @@ RATE_OVER_S = 5.0
 @dataclass(frozen=True)
 class RecordingLimits:
     """stall_s: a file that has not grown for so long is not written; min_free_B: below it the recording is ended while
-    it can still be closed; warn_free_B: below it the operator is told.
+    it can still be closed; warn_free_B: below it the operator is told; behind_s: a bag whose newest message is older
+    is not kept up by its disk, and what is published now may be lost.
     """
 
     stall_s: float
     min_free_B: float
     warn_free_B: float
+    behind_s: float = math.inf
 
 
 class Look(NamedTuple):
-    """What is seen of the recording at one time. exit_code: None while the child lives; free_B: NaN when unknown."""
+    """What is seen of the recording at one time. exit_code: None while the child lives; free_B: NaN when unknown;
+    behind_s: age of the newest message in the file, NaN when unknown.
+    """
 
     now_s: float
     bytes: int
     exit_code: int | None
     free_B: float
+    behind_s: float = math.nan
 
 
 class Verdict(NamedTuple):
@@ -75,6 +80,10 @@ class RecordingWatch:
             return Verdict(False, False, f"nothing was written for {silent_s:.1f} s: look at the disk", left_s)
         if look.bytes == self._opened_B:
             return Verdict(False, False, "starting", left_s)
+        if look.behind_s > limits.behind_s:
+            return Verdict(False, False, f"the disk is too slow: the bag is {look.behind_s:.0f} s behind", left_s)
+        if look.behind_s > limits.stall_s:
+            return Verdict(True, False, f"the disk is slow: the bag is {look.behind_s:.0f} s behind", left_s)
         if look.free_B < limits.warn_free_B:
             until = f", full in {left_s / 60.0:.0f} min" if math.isfinite(left_s) else ""
             return Verdict(True, False, f"{look.free_B / 1e6:.0f} MB free on the disk{until}", left_s)

@@ -47,6 +47,7 @@ class Recorder(Node):
             stall_s=self.params.number("stall_s", 0.5, 30.0),
             min_free_B=1e6 * min_free_MB,
             warn_free_B=1e6 * self.params.number("warn_free_MB", min_free_MB, 1e9),
+            behind_s=self.params.number("behind_s", 1.0, 600.0),
         )
         self.restart = self.params.flag("restart")
         self.topics = read_topics(Path(self.params.text("topics_file")))
@@ -56,7 +57,7 @@ class Recorder(Node):
         self.watch: RecordingWatch | None = None
         self.wanted, self.reason, self.path, self.recording = False, "not started", "", False
         self.started_s = self.died_s = 0.0
-        self.free_B = self.left_s = float("nan")
+        self.free_B = self.left_s = self.behind_s = float("nan")
         self.bytes = 0
         self._events = self.output("/system/events", String)
         self._state = self.output("/recorder/state", RecorderState, latch=True)
@@ -120,7 +121,9 @@ class Recorder(Node):
 
     def _judge(self, bag: BagProcess, watch: RecordingWatch) -> None:
         self.bytes, self.free_B = bag.bytes(), free_bytes(str(bag.path.parent))
-        verdict = watch.look(Look(time.monotonic(), self.bytes, bag.exit_code, self.free_B))
+        newest_ns = bag.newest_ns()
+        self.behind_s = float("nan") if newest_ns is None else 1e-9 * (time.time_ns() - newest_ns)
+        verdict = watch.look(Look(time.monotonic(), self.bytes, bag.exit_code, self.free_B, self.behind_s))
         was, self.recording, self.left_s = self.recording, verdict.recording, verdict.left_s
         news = verdict.reason != self.reason and (not verdict.recording or was != verdict.recording)
         self.reason = verdict.reason
@@ -192,7 +195,8 @@ class Recorder(Node):
 
     def report(self) -> dict:
         """The bag and its size."""
-        return {"bag": self.path, "MB": round(self.bytes / 1e6, 1), "free_MB": round(self.free_B / 1e6, 0)}
+        values = {"bag": self.path, "MB": round(self.bytes / 1e6, 1), "free_MB": round(self.free_B / 1e6, 0)}
+        return {**values, "behind_s": round(self.behind_s, 1)}
 
 
 def read_topics(path: Path) -> list[str]:

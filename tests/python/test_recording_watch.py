@@ -9,9 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from saras_ros1.bag_process import newest_time_ns
 from saras_ros1.recording_watch import Look, RecordingLimits, RecordingWatch, free_bytes, writable
 
-LIMITS = RecordingLimits(stall_s=2.0, min_free_B=1e8, warn_free_B=1e9)
+LIMITS = RecordingLimits(stall_s=2.0, min_free_B=1e8, warn_free_B=1e9, behind_s=10.0)
 
 
 def look(watch, now_s, size, exit_code=None, free_B=1e12):
@@ -33,6 +34,35 @@ def test_a_bag_that_stands_still_is_not_and_is_again_when_it_grows():
     stalled = look(watch, 2.5, 2000)
     assert not stalled.recording and not stalled.stop and "nothing was written for 2.3 s" in stalled.reason
     assert look(watch, 2.6, 2001).recording
+
+
+def test_a_bag_that_grows_behind_the_messages_is_said():
+    watch = RecordingWatch(LIMITS, 0.0)
+    look(watch, 0.1, 500)
+    seen = [watch.look(Look(0.2 * k, 1000 * k, None, 1e12, 0.1 * k)) for k in range(1, 150)]
+    for k, verdict in enumerate(seen, start=1):
+        assert verdict.recording == (0.1 * k <= 10.0)
+        assert ("slow" in verdict.reason) == (0.1 * k > 2.0)
+        assert not verdict.stop
+    assert watch.look(Look(31.0, 10**6, None, 1e12, math.nan)).recording
+
+
+def test_the_newest_message_is_found_in_the_tail_of_a_bag(tmp_path):
+    rosbag, genpy = pytest.importorskip("rosbag"), pytest.importorskip("genpy")
+    from std_msgs.msg import String
+
+    path, sizes = tmp_path / "a.bag", []
+    with rosbag.Bag(str(path), "w", chunk_threshold=4000) as bag:
+        for k in range(400):
+            bag.write("/text", String("time=" * (k % 50)), genpy.Time(1_700_000_000 + k, 5 * k))
+            bag._file.flush()
+            sizes.append(path.stat().st_size)
+    data = path.read_bytes()
+    for k in range(2, 400):
+        found = newest_time_ns(data[: sizes[k]][-(1 << 16) :])
+        assert found is not None and found % 10**9 == 5 * (found // 10**9 - 1_700_000_000)
+        assert 0 <= k - (found // 10**9 - 1_700_000_000) <= 1
+    assert newest_time_ns(b"") is None and newest_time_ns(data[:20]) is None
 
 
 def test_the_head_of_a_file_is_no_recording():

@@ -23,7 +23,7 @@ from saras_ros1.msg import RecorderState
 from saras_ros1.srv import Annotate, StartRecording
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
-from support import Newest, wait_until
+from support import ROOT, Newest, wait_until
 
 RATE_HZ = 200.0
 
@@ -175,6 +175,38 @@ class Recorder(unittest.TestCase):
         self.assertFalse(done)
         self.assertIn("Read-only", said)
         self.assertIn("Read-only", self.state.next().reason)
+
+    def test_7_a_slow_disk_is_said_and_holds_up_nobody(self):
+        folder = Path(tempfile.mkdtemp())
+        shim, rate = folder / "slow_disk.so", folder / "bytes_per_s"
+        source = ROOT / "tests" / "faults" / "slow_disk.c"
+        subprocess.run(["cc", "-O2", "-Wall", "-Werror", "-shared", "-fPIC", "-o", shim, source, "-ldl"], check=True)
+        rate.write_text("0")
+        rospy.set_param("/slow", {**rospy.get_param("/recorder"), "behind_s": 6.0})
+        names = ["__name:=slow", *(f"/recorder/{what}:=/slow/{what}" for what in ("state", "annotations"))]
+        path = [ROOT / "devel" / "lib" / "saras_ros1" / "recorder", *names]
+        slow = subprocess.Popen(path, env={**os.environ, "LD_PRELOAD": str(shim), "SLOW_DISK_FILE": str(rate)})
+        self.addCleanup(slow.wait, 60.0)
+        self.addCleanup(slow.terminate)
+        state, points = Newest("/slow/state", RecorderState), Newest("/test/points", PointStamped)
+        rospy.wait_for_service("/slow/start", 60.0)
+        self.assertTrue(rospy.ServiceProxy("/slow/start", StartRecording)(str(folder / "slow.bag")).success)
+        wait_until(lambda: state.message is not None and state.message.recording, "the bag grows")
+        points.clear()
+        rate.write_text("5000")  # a tenth of what comes
+        wait_until(lambda: "the disk is slow" in state.message.reason, lambda: f"slow, {state.message}", 60.0)
+        self.assertTrue(state.message.recording)
+        wait_until(lambda: "too slow" in state.message.reason, lambda: f"too slow, {state.message}", 60.0)
+        self.assertFalse(state.message.recording)
+        numbers = [int(message.point.x) for message in list(points.all)]
+        self.assertGreater(len(numbers), 100)
+        self.assertEqual(numbers, list(range(numbers[0], numbers[0] + len(numbers))), "others hear all of it meanwhile")
+        rate.write_text("0")
+        wait_until(lambda: state.message.recording and not state.message.reason, lambda: f"{state.message}", 60.0)
+        self.assertTrue(rospy.ServiceProxy("/slow/stop", Trigger)().success)
+        found = self.numbers(folder / "slow.bag")
+        self.assertEqual(found, list(range(found[0], found[-1] + 1)), "what waited for the disk came later")
+        self.assertGreaterEqual(found[-1], numbers[-1])
 
     def mount(self, options):
         disk = Path(tempfile.mkdtemp())
