@@ -160,6 +160,53 @@ def test_annotations_become_columns(tmp_path):
     assert any("no JSON" in note for note in made.notes)
 
 
+def test_speech_becomes_a_column_on_the_sounds_own_time(tmp_path):
+    """The sound began 1 s after the session and its card runs 1 % slow; the transcript counts from the sound's begin."""
+    bag = synthetic.BagWriter(tmp_path / "s.bag")
+    for k in range(400):
+        bag.pose("/mesa_left/ee_pose", k / 20, (0, 0, 0), "mesa_left/sbs_world")
+    for t, label in ((0.5, "grasp"), (8.0, "clip"), (16.0, "end")):
+        bag.text("/recorder/annotations", t, json.dumps({"kind": "action", "label": label}))
+    bag.close()
+    start_ns = synthetic.START_NS + 500_000  # of the first message
+    (tmp_path / "s_audio.flac").write_bytes(b"fLaC\0\0\0\x22" + bytes(10) + (16000 << 4).to_bytes(3, "big") + bytes(21))
+    index = [f"{1600 * k},{start_ns + 10**9 + k * 101_000_000}\n" for k in range(160)]
+    (tmp_path / "s_audio.samples.csv").write_text("sample,stamp_ns\n" + "".join(index))
+    said = [
+        (2.0, 3.0, "grasp it"),
+        (5.0, 6.0, "It's there"),
+        (9.0, 10.0, "clip"),
+        (9.5, 10.5, "clip now"),
+        (17.0, 18.0, "x"),
+    ]
+    rows = "".join(f"{a},{b},{text}\n" for a, b, text in said)
+    (tmp_path / "s_audio.csv").write_text("start_s,end_s,text\n" + rows)
+    made, table = table_of(tmp_path / "s.bag", rate_hz=50.0)
+    t = table["t_s"].to_numpy()
+    np.testing.assert_array_equal(table["speech_valid"], (t >= 1.0) & (t <= 1.0 + 0.101 * 159))
+    both = (t >= 1.0 + 9.5 * 1.01 + 1e-6) & (t < 1.0 + 10.0 * 1.01 - 1e-6)
+    assert set(table["speech_text"][both]) == {"clip; clip now"}
+    one = table["speech_text"] == "grasp it"
+    assert t[one].min() == pytest.approx(1.0 + 2.0 * 1.01, abs=0.02)
+    assert t[one].max() == pytest.approx(1.0 + 3.0 * 1.01, abs=0.02)
+    assert any("before or after the sound" in note for note in made.notes)
+    card = export([tmp_path / "s.bag"], tmp_path / "set", Options(rate_hz=50.0), videos=True)
+    assert card["sessions"][0]["speech"] == {"transcript": "s_audio.csv", "utterances": 5}
+    assert (tmp_path / "set" / "videos" / "s" / "s_audio.csv").exists()
+    words = pandas.read_parquet(tmp_path / "set" / "speech_by_action.parquet").set_index(["action", "word"])
+    assert words["count"].to_dict() == {
+        ("clip", "clip"): 2, ("clip", "now"): 1, ("grasp", "grasp"): 1, ("grasp", "it"): 1, ("grasp", "it's"): 1,
+        ("grasp", "there"): 1,
+    }  # fmt: skip
+    # Sound from 1.0 to 17.06 s: grasp until 8 s, clip until 16 s.
+    assert words.loc[("grasp", "it"), "seconds"] == pytest.approx(7.0, abs=0.05)
+    assert words.loc[("clip", "clip"), "per_minute"] == pytest.approx(60.0 * 2 / 8.0, rel=0.01)
+    assert words.loc[("clip", "clip"), "lift"] == pytest.approx(16.06 / 8.0, rel=0.01)
+    (tmp_path / "s_audio.flac").write_bytes(b"RIFF" + bytes(40))
+    with pytest.raises(saras.Error, match="no FLAC"):
+        table_of(tmp_path / "s.bag", rate_hz=50.0)
+
+
 def test_the_set_loads_in_pandas_with_card_units_and_frames(bag, tmp_path, capsys):
     assert cli.main(["dataset", str(bag), "--out", str(tmp_path / "set"), "--rate-hz", "25"]) == 0
     assert "sessions/one.parquet: 300 rows" in capsys.readouterr().out

@@ -21,6 +21,16 @@ def index_path(sound: Path) -> Path:
     return sound.with_suffix(".samples.csv")
 
 
+def rate_hz(sound: Path) -> int:
+    """Samples a second, as the FLAC file says (its STREAMINFO, 20 bits). Raises SoundError, OSError."""
+    with sound.open("rb") as file:
+        head = file.read(22)
+    rate = int.from_bytes(head[18:21], "big") >> 4
+    if len(head) < 22 or head[:4] != b"fLaC" or head[4] & 0x7F or not rate:
+        raise SoundError(f"{sound}: no FLAC file")
+    return rate
+
+
 def read_index(sound: Path) -> npt.NDArray[np.int64]:
     """(n, 2) sample, stamp_ns of a sound's index, n >= 2; a last line that was cut is left out. Raises SoundError."""
     lines = index_path(sound).read_text(encoding="utf-8").split("\n")
@@ -41,4 +51,4 @@ def times_ns(sound: Path, samples: npt.ArrayLike) -> npt.NDArray[np.int64]:
     return whole
 
 
-__all__ = ["INDEX_HEAD", "SoundError", "index_path", "read_index", "times_ns"]
+__all__ = ["INDEX_HEAD", "SoundError", "index_path", "rate_hz", "read_index", "times_ns"]

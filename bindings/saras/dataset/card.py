@@ -79,6 +79,17 @@ def _lines(card: dict[str, Any]) -> list[str]:
         f"| {column['name']} | {column['unit']} | {column['frame']} | {column['method']} | {column['text']} |"
         for column in seen.values()
     ]
+    if any("speech" in session for session in sessions):
+        lines += ["", "## Speech (speech_by_action.parquet)", ""]
+        lines += [
+            "A row a pair of action and word: `count` of the word in utterances that begin in the action, its rate"
+        ]
+        lines += ["`per_minute`, and `lift`, that rate over the word's rate at all times (1: it goes with no action)."]
+        lines += [
+            f"{session['name']}: {session['speech']['utterances']} utterances of {session['speech']['transcript']}."
+            for session in sessions
+            if "speech" in session
+        ]
     if card["nominal"]:
         lines += ["", "## Nominal trajectories (nominal.parquet)", "", f"Phase by {card['phase']}."]
         lines += ["", "| tool | action | executions | mean duration [s] |", "|---|---|---|---|"]

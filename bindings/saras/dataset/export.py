@@ -16,6 +16,7 @@ import saras
 from saras import ConfigError, Error
 from saras.dataset.card import write_card
 from saras.dataset.nominal import Execution, executions, nominal
+from saras.dataset.speech import ENDINGS, Spoken, by_action, spoken
 from saras.dataset.table import Options, Table, make_table
 from saras.dataset.validation import validate
 from saras.recording import Session
@@ -38,6 +39,7 @@ class Exported:
     name: str
     facts: dict[str, Any]
     executions: list[Execution] = field(default_factory=list)
+    spoken: Spoken | None = None
 
 
 def export(
@@ -92,6 +94,9 @@ def export(
         trajectories = nominal([row for one in every for row in one.executions], phase)
         if trajectories:
             _write_nominal(part / "nominal.parquet", trajectories)
+        words = by_action(one.spoken for one in every if one.spoken is not None)
+        if words["word"]:
+            _write_words(part / "speech_by_action.parquet", words)
         card = {
             "format": "saras data set",
             "version": 1,
@@ -134,7 +139,7 @@ def videos_of(bag: Path) -> list[Path]:
     """Videos and sound that were recorded beside a bag, with their indices."""
     stem = bag.name.removesuffix(".bag").removesuffix(".repaired")
     names = [f"{stem}_{side}.{ending}" for side in ("left", "right") for ending in ("mkv", "frames.csv")]
-    names += [f"{stem}_audio.{ending}" for ending in ("flac", "samples.csv")]
+    names += [f"{stem}_audio.{ending}" for ending in ("flac", "samples.csv", *ENDINGS)]
     return [bag.with_name(name) for name in names if bag.with_name(name).is_file()]
 
 
@@ -209,7 +214,11 @@ def export_session(job: Job) -> Exported:
             "notes": table.notes,
             "validation": validate(session, job.options),
         }
-    return Exported(Path(job.out).stem, facts, executions(table.columns))
+    said = None
+    if table.speech is not None:
+        facts["speech"] = {"transcript": table.speech.file, "utterances": len(table.speech.utterances)}
+        said = spoken(table.speech, table.columns["t_s"], table.columns["annotation_action"])
+    return Exported(Path(job.out).stem, facts, executions(table.columns), said)
 
 
 def write_parquet(path: Path, table: Table) -> None:
@@ -225,6 +234,14 @@ def write_parquet(path: Path, table: Table) -> None:
         fields.append(pa.field(info.name, array.type, metadata=meta))
         arrays.append(array)
     pq.write_table(pa.Table.from_arrays(arrays, schema=pa.schema(fields)), path, compression="zstd")
+
+
+def _write_words(path: Path, words: dict[str, list[Any]]) -> None:
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    table = pa.table({**words, "action": pa.array(words["action"], type=pa.string())})
+    pq.write_table(table, path, compression="zstd")
 
 
 def _write_nominal(path: Path, rows: list[Any]) -> None:

@@ -15,6 +15,7 @@ from saras import ConfigError, Error
 from saras.dataset import resample
 from saras.dataset.annotations import annotation_columns
 from saras.dataset.sources import LINEAR, PREVIOUS, SLERP, Samples, Source, sources
+from saras.dataset.speech import Speech, read_speech, speech_columns
 from saras.recording import Session, Topic
 
 Floats = NDArray[np.float64]
@@ -86,6 +87,7 @@ class Table:
     sources: list[SourceInfo] = field(default_factory=list)
     absent: list[str] = field(default_factory=list)  #: sources that were not recorded
     notes: list[str] = field(default_factory=list)
+    speech: Speech | None = None  #: None: no transcript beside the bag
 
     def __len__(self) -> int:
         return len(next(iter(self.columns.values()))) if self.columns else 0
@@ -116,6 +118,16 @@ def make_table(session: Session, options: Options | None = None) -> Table:
             table.absent.append(source.name)
         else:
             _add(table, source, topic, t, options)
+    table.speech = read_speech(Path(session.path), start_ns)
+    if table.speech is None:
+        table.absent.append("speech")
+    else:
+        said, heard = speech_columns(table.speech, t)
+        name, outside = table.speech.file, int((~heard).sum())
+        table.add(ColumnInfo("speech_text", "", "", name, "while it lasts", "what is being said; null: nothing"), said)
+        table.add(ColumnInfo("speech_valid", "bool", "", name, "", "whether the sound was recorded here"), heard)
+        if outside:
+            table.notes.append(f"{name}: {outside} rows are before or after the sound")
     for info, values in annotation_columns(session.topic("/recorder/annotations"), t, start_ns, table.notes):
         table.add(ColumnInfo(info[0], "", "", "/recorder/annotations", info[1], info[2]), values)
     return table
