@@ -161,7 +161,7 @@ def test_annotations_become_columns(tmp_path):
 
 
 def test_speech_becomes_a_column_on_the_sounds_own_time(tmp_path):
-    """The sound began 1 s after the session and its card runs 1 % slow; the transcript counts from the sound's begin."""
+    """The sound begins 1 s after the session, its card is 1 % slow; the transcript counts from the sound's begin."""
     bag = synthetic.BagWriter(tmp_path / "s.bag")
     for k in range(400):
         bag.pose("/mesa_left/ee_pose", k / 20, (0, 0, 0), "mesa_left/sbs_world")
