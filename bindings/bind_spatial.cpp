@@ -1,6 +1,7 @@
 #include "casters.hpp"
 #include "rooms.hpp"
 #include "saras/calibration/calibration_error.hpp"
+#include "saras/model/model_error.hpp"
 #include "saras/spatial/errors.hpp"
 #include "saras/spatial/rotation.hpp"
 #include "saras/spatial/status.hpp"
@@ -17,6 +18,7 @@ void bind_spatial(py::module_& m) {
   static py::exception<ProtocolError> protocol_error(m, "ProtocolError", value_bases);
   static py::exception<KinematicsError> kinematics_error(m, "KinematicsError", value_bases);
   static py::exception<CalibrationError> calibration_error(m, "CalibrationError", value_bases);
+  static py::exception<ModelError> model_error(m, "ModelError", value_bases);
   py::register_exception_translator([](std::exception_ptr pointer) {
     try {
       if (pointer) {
@@ -28,6 +30,8 @@ void bind_spatial(py::module_& m) {
       py::set_error(protocol_error, e.what());
     } catch (const CalibrationError& e) {
       py::set_error(calibration_error, e.what());
+    } catch (const ModelError& e) {
+      py::set_error(model_error, e.what());
     } catch (const KinematicsError& e) {
       py::set_error(kinematics_error, e.what());
     } catch (const Error& e) {

@@ -27,6 +27,8 @@ PYBIND11_MODULE(_core, m) {
   saras::bindings::bind_overlay(overlay);
   auto contact = m.def_submodule("contact", "Force of a contact that a camera sees");
   saras::bindings::bind_contact(contact);
+  auto model = m.def_submodule("model", "What touch tells of stiffness and shape");
+  saras::bindings::bind_model(model);
 #ifdef SARAS_WITH_RUNTIME
   auto runtime = m.def_submodule("runtime", "The real-time host: loop, mailboxes, flight recorder");
   saras::bindings::bind_runtime(runtime);

@@ -17,6 +17,7 @@ void bind_console(pybind11::module_& m);
 void bind_pipeline(pybind11::module_& m);
 void bind_overlay(pybind11::module_& m);
 void bind_contact(pybind11::module_& m);
+void bind_model(pybind11::module_& m);
 void bind_runtime(pybind11::module_& m);  ///< where the core has it: Linux, OpenSSL
 
 }  // namespace saras::bindings

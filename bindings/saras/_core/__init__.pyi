@@ -18,6 +18,7 @@ from . import console
 from . import pipeline
 from . import overlay
 from . import contact
+from . import model
 from . import runtime
 
 __all__: list[str] = [
@@ -25,6 +26,7 @@ __all__: list[str] = [
     "ConfigError",
     "Error",
     "KinematicsError",
+    "ModelError",
     "ProtocolError",
     "Status",
     "add_delta",
@@ -34,6 +36,7 @@ __all__: list[str] = [
     "contact",
     "displacement",
     "kinematics",
+    "model",
     "net",
     "overlay",
     "pipeline",
@@ -56,6 +59,9 @@ class KinematicsError(Error, ValueError):
     pass
 
 class CalibrationError(Error, ValueError):
+    pass
+
+class ModelError(Error, ValueError):
     pass
 
 class Status:

@@ -1,0 +1,43 @@
+"""What touch tells of tissue: stiffness, surface, and how well both are known.
+
+Positions are (n, 3) [m] in one base frame, forces (n, 3) [N] that the *tool exerts on the tissue* (pressing points into
+it). NaN with an infinite deviation means: not known. Samples that nothing may be learned from raise ModelError.
+"""
+
+from saras._core.model import (
+    EstimateStatus,
+    GpHyperparameters,
+    HashGrid,
+    HashGridConfig,
+    LocalGp,
+    LocalModelConfig,
+    SampleVerdict,
+    StiffnessGp,
+    StiffnessGpConfig,
+    StiffnessGpOutput,
+    StiffnessGpState,
+    SurfaceEstimate,
+    TouchBelief,
+)
+from saras.model.learning import GpLearning, learn_hyperparameters
+from saras.model.stiffness_map import StiffnessMap, SurfaceEstimates
+
+__all__ = [
+    "EstimateStatus",
+    "GpHyperparameters",
+    "GpLearning",
+    "HashGrid",
+    "HashGridConfig",
+    "LocalGp",
+    "LocalModelConfig",
+    "SampleVerdict",
+    "StiffnessGp",
+    "StiffnessGpConfig",
+    "StiffnessGpOutput",
+    "StiffnessGpState",
+    "StiffnessMap",
+    "SurfaceEstimate",
+    "SurfaceEstimates",
+    "TouchBelief",
+    "learn_hyperparameters",
+]
