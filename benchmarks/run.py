@@ -17,6 +17,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parent))
 import calibration
 import latency
+import model
 import overlay
 import peers
 import pipeline
@@ -28,7 +29,7 @@ import struct_codec
 from saras import net
 
 PYTHON_PEERS = {"teleop": ("numpy", peers.teleop), "codec": ("struct", peers.codec)}
-GROUPS = [*PYTHON_PEERS, "collision", "calibration", "latency", "overlay", "stereo_contact", "recording"]
+GROUPS = [*PYTHON_PEERS, "collision", "calibration", "latency", "overlay", "stereo_contact", "recording", "model"]
 BENCH_PYTHON = Path(__file__).parents[1] / "bench-venv" / "bin" / "python"
 TOLERANCE = 1e-9
 COLLISION_PAIRS = 100_000
@@ -111,6 +112,7 @@ def run(groups, program, soak_s=0.0):
     rows += overlay.run() if "overlay" in groups else []
     rows += stereo_contact.run() if "stereo_contact" in groups else []
     rows += recording.run() if "recording" in groups else []
+    rows += model.run() if "model" in groups else []
     return rows
 
 
@@ -154,7 +156,7 @@ def show(rows):
     for heading in ("ours", "peer", "their p50 : ours"):
         table.add_column(heading, justify="right")
     for row in rows:
-        digits = {"calibration": 3, "stereo_contact": 1, "recording": 1}.get(row["group"], 0)
+        digits = {"calibration": 3, "stereo_contact": 1, "recording": 1, "model": 1}.get(row["group"], 0)
         ours = " / ".join(f"{row['ours'][p]:,.{digits}f}" for p in ("p50", "p99"))
         if not row["peers"]:
             table.add_row(row["group"], row["name"], row["unit"], ours, "", "")
@@ -178,7 +180,7 @@ def main():
         parser.error(f"unknown group {', '.join(sorted(unknown))}; there are {', '.join(GROUPS)}")
     try:
         rows = run(arguments.groups or list(GROUPS), arguments.program, arguments.soak)
-    except (NotTheSame, calibration.NoResult, overlay.NotTheSame, recording.NotTheSame) as error:
+    except (NotTheSame, calibration.NoResult, overlay.NotTheSame, recording.NotTheSame, model.NotTheSame) as error:
         print(f"script/bench: {error}", file=sys.stderr)
         return 1
     show(rows)
