@@ -1,7 +1,8 @@
 """script/bench model: what a palpation teaches, beside scikit-learn's GaussianProcessRegressor.
 
 Both learn the same seeded palpation of the simulated phantom (without damping: scikit-learn's kernels know positions
-only) and are judged by the phantom's truth. update_N: the time until the N-th sample is in the estimate under the tip.
+only), are told the surface's normals, as a registered mesh has them, and are judged by the phantom's truth.
+update_N: the time until the N-th sample is in the estimate under the tip.
 scikit-learn's kernel and length scales are its own optimum over a part of the samples (a search over all 10^4 takes
 hours); the timed fit keeps them.
 """
@@ -74,7 +75,8 @@ class ScikitLearn:
 
     @staticmethod
     def arrays(recorded):
-        return 1e3 * recorded.positions, np.linalg.norm(recorded.forces, axis=1)
+        normals = phantom().normal(recorded.positions)
+        return 1e3 * recorded.positions, -(recorded.forces * normals).sum(1)
 
     def fit(self, recorded):
         return self._regressor(self.kernel, optimizer=None).fit(*self.arrays(recorded))
@@ -107,7 +109,7 @@ def our_updates(samples: int, hyperparameters):
 
 def error_rows(samples: int, ours: StiffnessMap, theirs) -> list[dict]:
     points, normals, force, stiffness = held_out()
-    found = ours.estimate(points)
+    found = ours.estimate(points, normals=normals)
     if not found.known.mean() > 0.99:
         raise NotTheSame(f"model: ours knows only {found.known.mean():.1%} of the held-out points")
     points, normals, force, stiffness = (part[found.known] for part in (points, normals, force, stiffness))
