@@ -6,6 +6,8 @@ from PyPI: Debian's 4.6 has known sign errors), in a process that reads the draw
 
 from __future__ import annotations
 
+import argparse
+import io
 import subprocess
 import sys
 import tempfile
@@ -15,11 +17,16 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "property"))
 from calibration_rig import DEGREE, HandEyeDraw, pose
+from rich.console import Console
 
 import saras
 from saras.calibration import board, frame_from_points, hand_eye
+from saras.calibration.calibrate_command import add_guide_arguments
+from saras.calibration.guided import Guide, errors
+from saras.calibration.simulated import ENDOSCOPE, SimulatedRoom
+from saras.kinematics import scene
 
-DRAWS = 1000
+DRAWS, SESSIONS = 1000, 30
 PEERS = ("tsai", "park", "horaud", "andreff", "daniilidis")
 #: Spread of the rotations [deg], poses, gross errors: one pose in ten with 5 deg and 10 mm an axis more.
 SWEEP = [(spread, n, outliers) for spread in (15, 40) for n in (10, 30) for outliers in (False, True)]
@@ -120,10 +127,55 @@ def dot_rows(draws: int) -> list[dict]:
     return rows
 
 
+class TouchingRoom(SimulatedRoom):
+    """The simulated room without the endoscope, which touches nothing."""
+
+    @property
+    def arms(self) -> dict:
+        return {name: arm for name, arm in super().arms.items() if name != ENDOSCOPE}
+
+
+def guided_rows(sessions: int) -> list[dict]:
+    """The guided procedure as `saras calibrate simulation --yes` runs it: the worst base of each session."""
+    root = Path(__file__).parents[1]
+    arguments = argparse.ArgumentParser()
+    add_guide_arguments(arguments)
+    usual = arguments.parse_args([])
+    place, touches = scene.load(root / "config" / "scene.yaml"), []
+    worst: dict[str, list[float]] = {"its base": [], "tools, 50 mm above the board": []}
+    for seed in range(sessions):
+        room = TouchingRoom(place, board(), seed)
+        quiet = Console(file=io.StringIO())
+        guide = Guide(room, ENDOSCOPE, quiet, automatic=True, rounds=usual.rounds, known_to_m=1e-3 * usual.known_to_mm)
+        calibration = guide.run()
+        truth = {room.frame(arm): room.truth(arm) for arm in room.arms}
+        worst["its base"].append(1e3 * max(distance for distance, _ in errors(calibration, truth).values()))
+        point = room.world_T_board @ [0.0, 0.0, 0.05, 1.0]
+        found = [
+            calibration.frames[name].parent_T_frame @ np.linalg.inv(world_T_base) @ point
+            for name, world_T_base in truth.items()
+        ]
+        worst["tools, 50 mm above the board"].append(1e3 * max(np.linalg.norm(each - point) for each in found))
+        touches += [len(taken) for taken in guide.registration.touches.values()]
+    within = int((np.array(worst["its base"]) <= 1.0).sum())
+    print(
+        f"calibration: {within} of {sessions} guided sessions have all touched bases within 1 mm; "
+        f"{np.mean(touches):.0f} touches an arm",
+        file=sys.stderr,
+    )
+    rows = []
+    for where, values in worst.items():
+        ours = {**_quantiles(np.array(values)), "mean": float(np.mean(values))}
+        row = {"group": "calibration", "name": f"guided session, worst arm: {where}", "unit": "mm", "ours": ours}
+        row |= {"within_1mm": int((np.array(values) <= 1.0).sum()), "sessions": sessions}
+        rows.append({**row, "touches_an_arm": float(np.mean(touches)), "peers": {}, "ratio": {}})
+    return rows
+
+
 def _quantiles(values: np.ndarray) -> dict[str, float]:
     return {"p50": float(np.quantile(values, 0.5)), "p99": float(np.quantile(values, 0.99))}
 
 
 def run(python: Path, draws: int = DRAWS) -> list[dict]:
     """All rows of the group."""
-    return dot_rows(draws) + hand_eye_rows(draws, python)
+    return dot_rows(draws) + guided_rows(SESSIONS) + hand_eye_rows(draws, python)

@@ -17,7 +17,7 @@ RATE_OVER_S = 5.0
 class RecordingLimits:
     """stall_s: a file that has not grown for so long is not written; min_free_B: below it the recording is ended while
     it can still be closed; warn_free_B: below it the operator is told; behind_s: a bag whose newest message is older
-    is not kept up by its disk, and what is published now may be lost.
+    does not keep up, and what is published now may be lost.
     """
 
     stall_s: float
@@ -81,9 +81,10 @@ class RecordingWatch:
         if look.bytes == self._opened_B:
             return Verdict(False, False, "starting", left_s)
         if look.behind_s > limits.behind_s:
-            return Verdict(False, False, f"the disk is too slow: the bag is {look.behind_s:.0f} s behind", left_s)
+            reason = f"the bag is {look.behind_s:.0f} s behind: disk or processor too slow"
+            return Verdict(False, False, reason, left_s)
         if look.behind_s > limits.stall_s:
-            return Verdict(True, False, f"the disk is slow: the bag is {look.behind_s:.0f} s behind", left_s)
+            return Verdict(True, False, f"the bag is {look.behind_s:.0f} s behind: disk or processor slow", left_s)
         if look.free_B < limits.warn_free_B:
             until = f", full in {left_s / 60.0:.0f} min" if math.isfinite(left_s) else ""
             return Verdict(True, False, f"{look.free_B / 1e6:.0f} MB free on the disk{until}", left_s)

@@ -42,7 +42,8 @@ def test_shifts_are_found_to_a_sample(many: int) -> None:
             assert found.within_a_frame
         if worst > 66_700_000 + 1.3 * 66_700_000:
             assert not found.within_a_frame
-        assert "seen by all" in found.lines()[-1] and found.facts()["seen_by_all"] == len(found.late_s)
+        assert "seen by all" in found.lines()[-2] and found.lines()[-1].endswith("within one picture")
+        assert found.facts()["seen_by_all"] == len(found.late_s)
 
 
 def test_a_source_that_misses_claps_is_not_aligned() -> None:
@@ -50,7 +51,9 @@ def test_a_source_that_misses_claps_is_not_aligned() -> None:
     whole = [made(rng, name, 0, 8) for name in SOURCES]
     blind = Onsets("left eye", whole[0].before_ns[:1], whole[0].at_ns[:1], whole[0].span_ns)
     assert align(whole, 0.0667).within_a_frame
-    assert not align([blind, *whole[1:]], 0.0667).within_a_frame
+    found = align([blind, *whole[1:]], 0.0667)
+    assert not found.known and not found.within_a_frame and found.facts()["within_a_frame"] is None
+    assert found.lines()[-1].startswith("unknown: ")
     with pytest.raises(Error, match="no clap"):
         onsets("left eye", "picture", np.arange(100) * 10**7, np.full(100, 90.0))
 

@@ -263,7 +263,8 @@ def test_refused_bags_leave_nothing(bag, tmp_path):
 
 
 def test_sessions_of_one_name_are_numbered(tmp_path):
-    assert session_names(["a/x.bag", "b/x.bag", "d1/session.bag", "d1/y.bag"]) == ["x", "x_2", "d1", "y"]
+    bags = ["a/x.bag", "b/x.bag", "d1/session.bag", "d1/y.bag", "d2/session.repaired.bag"]
+    assert session_names(bags) == ["x", "x_2", "d1", "y", "d2"]
 
 
 def test_validation_gives_workspace_accuracy_and_velocity(bag):

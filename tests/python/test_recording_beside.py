@@ -19,7 +19,7 @@ from saras import cli
 from saras.capture import sound_index, video_file
 from saras.capture.sound import SoundFile
 from saras.capture.video_file import VideoFile
-from saras.recording.beside import check_beside
+from saras.recording.beside import beside, check_beside
 
 FRAMES, SIZE, RATE_HZ = 40, (160, 120), 16000
 
@@ -113,6 +113,14 @@ def test_sound_with_a_gap_and_cut_sound(session: Path) -> None:
     sound = session.with_name("s_audio.flac")
     sound.write_bytes(sound.read_bytes()[: sound.stat().st_size // 2])
     assert ("s_audio.flac", "sound") in named(session)
+
+
+def test_what_is_beside_a_repaired_bag_is_that_of_the_bag(session: Path) -> None:
+    names = ("s.bag", "s.bag.active", "s.repaired.bag")
+    assert {beside(session.with_name(name), "left.mkv").name for name in names} == {"s_left.mkv"}
+    session.rename(session.with_name("s.repaired.bag"))
+    found = check_beside(session.with_name("s.repaired.bag"))
+    assert len(found.lines) == 3 and not found.findings
 
 
 def test_a_bag_that_was_not_closed_is_said(session: Path) -> None:

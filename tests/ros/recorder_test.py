@@ -194,7 +194,7 @@ class Recorder(unittest.TestCase):
         wait_until(lambda: state.message is not None and state.message.recording, "the bag grows")
         points.clear()
         rate.write_text("5000")  # a tenth of what comes
-        wait_until(lambda: "the disk is slow" in state.message.reason, lambda: f"slow, {state.message}", 60.0)
+        wait_until(lambda: "s behind" in state.message.reason, lambda: f"slow, {state.message}", 60.0)
         self.assertTrue(state.message.recording)
         wait_until(lambda: "too slow" in state.message.reason, lambda: f"too slow, {state.message}", 60.0)
         self.assertFalse(state.message.recording)

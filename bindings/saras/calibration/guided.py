@@ -26,8 +26,9 @@ from saras.calibration.registration import Arm, Registration, View
 Array = npt.NDArray[np.float64]
 
 
-#: Of a base's origin, along its worst axis: one standard deviation. With it four arms in a row are mostly within 1 mm.
-KNOWN_TO_M = 0.4e-3
+#: Of a base's origin, along its worst axis: one standard deviation. With it four arms in a row are within 1 mm
+#: (script/bench calibration: guided session).
+KNOWN_TO_M = 0.3e-3
 #: of each dot; more of them would not make a bad touch better
 MOST_ROUNDS = 12
 

@@ -20,6 +20,7 @@ from saras.dataset.speech import ENDINGS, Spoken, by_action, spoken
 from saras.dataset.table import Options, Table, make_table
 from saras.dataset.validation import validate
 from saras.recording import Session
+from saras.recording.beside import beside
 
 
 @dataclass(frozen=True)
@@ -126,7 +127,7 @@ def session_names(bags: Sequence[str | Path]) -> list[str]:
     """A name a bag: of the file, or of its directory where that says more; numbered when they repeat."""
     names: list[str] = []
     for bag in map(Path, bags):
-        stem = bag.name.removesuffix(".bag")
+        stem = bag.name.removesuffix(".bag").removesuffix(".repaired")
         base = bag.resolve().parent.name if stem == "session" else stem
         name, number = base, 2
         while name in names:
@@ -137,10 +138,9 @@ def session_names(bags: Sequence[str | Path]) -> list[str]:
 
 def videos_of(bag: Path) -> list[Path]:
     """Videos and sound that were recorded beside a bag, with their indices."""
-    stem = bag.name.removesuffix(".bag").removesuffix(".repaired")
-    names = [f"{stem}_{side}.{ending}" for side in ("left", "right") for ending in ("mkv", "frames.csv")]
-    names += [f"{stem}_audio.{ending}" for ending in ("flac", "samples.csv", *ENDINGS)]
-    return [bag.with_name(name) for name in names if bag.with_name(name).is_file()]
+    names = [f"{side}.{ending}" for side in ("left", "right") for ending in ("mkv", "frames.csv")]
+    names += [f"audio.{ending}" for ending in ("flac", "samples.csv", *ENDINGS)]
+    return [beside(bag, name) for name in names if beside(bag, name).is_file()]
 
 
 def _copy_videos(directory: Path, bags: Sequence[str | Path], every: list[Exported]) -> None:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from saras import Error
 from saras.capture import sound_index
 from saras.recording import transcript
+from saras.recording.beside import beside
 from saras.recording.transcript import Utterance
 
 Floats = NDArray[np.float64]
@@ -43,11 +44,10 @@ class Speech:
 
 def find(bag: Path) -> tuple[Path, Path] | None:
     """Transcript and sound beside a bag: NAME_audio.srt, .vtt or .csv, and NAME_audio.flac. None: no transcript."""
-    stem = bag.name.removesuffix(".bag").removesuffix(".repaired")
     for ending in ENDINGS:
-        path = bag.with_name(f"{stem}_audio.{ending}")
+        path = beside(bag, f"audio.{ending}")
         if path.is_file():
-            return path, bag.with_name(f"{stem}_audio.flac")
+            return path, beside(bag, "audio.flac")
     return None
 
 

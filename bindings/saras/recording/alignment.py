@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from saras import Error
 from saras.recording.bag import Bag
+from saras.recording.beside import beside
 from saras.sim.clap import SECOND_NS
 
 Times = npt.NDArray[np.int64]
@@ -59,10 +60,15 @@ class Alignment:
         return np.asarray(self.late_s.max(axis=1) - self.late_s.min(axis=1))
 
     @property
-    def within_a_frame(self) -> bool:
-        """Whether no source is wrong by more than a picture, and at least half of the claps are seen by all."""
+    def known(self) -> bool:
+        """Whether at least half of the claps are seen by all sources: with less there is no answer."""
         seen = np.isfinite(self.late_s).all(axis=1)
-        return bool(len(seen) and seen.mean() >= 0.5 and np.nanmax(self.error_s) <= self.frame_s)
+        return bool(len(seen) and seen.mean() >= 0.5)
+
+    @property
+    def within_a_frame(self) -> bool:
+        """Whether that is known, and no source is wrong by more than a picture."""
+        return self.known and bool(np.nanmax(self.error_s) <= self.frame_s)
 
     def facts(self) -> dict[str, Any]:
         """For JSON: milliseconds; by source: claps seen, mean and largest of late_s, largest of error_s."""
@@ -84,7 +90,7 @@ class Alignment:
             "frame_ms": 1e3 * self.frame_s,
             "apart_median_ms": 1e3 * float(np.median(apart)) if len(apart) else None,
             "apart_worst_ms": 1e3 * float(apart.max()) if len(apart) else None,
-            "within_a_frame": self.within_a_frame,
+            "within_a_frame": self.within_a_frame if self.known else None,
             "sources": sources,
         }
 
@@ -100,6 +106,10 @@ class Alignment:
         if facts["seen_by_all"]:
             text = f"median {facts['apart_median_ms']:.1f} ms, at most {facts['apart_worst_ms']:.1f} ms"
             rows.append(f"first to last source, sampling included: {text} ({facts['seen_by_all']} claps seen by all)")
+        if not self.known:
+            rows.append("unknown: fewer than half of the claps are seen by all")
+        else:
+            rows.append(f"{'aligned' if self.within_a_frame else 'not aligned'} within one picture")
         return rows
 
 
@@ -142,10 +152,9 @@ def measure(bag: Path, arm: str = "PSM1") -> Alignment:
     from saras.capture.sound_index import times_ns
     from saras.capture.video_file import read_index
 
-    stem = bag.name.removesuffix(".bag")
     sources, frame_s = [], float("nan")
     for side in ("left", "right"):
-        video = _beside(bag, f"{stem}_{side}.mkv")
+        video = _there(beside(bag, f"{side}.mkv"))
         stamps = read_index(video)[:, 1]
         shown = brightness(video)
         if len(shown) > len(stamps):
@@ -153,7 +162,7 @@ def measure(bag: Path, arm: str = "PSM1") -> Alignment:
         frame_s = 1e-9 * float(np.median(np.diff(stamps))) if side == "left" else frame_s
         sources.append(onsets(f"{side} eye", "picture", stamps[: len(shown)], shown))
     sources.append(_motion(bag, arm))
-    sound = _beside(bag, f"{stem}_audio.flac")
+    sound = _there(beside(bag, "audio.flac"))
     loud = np.abs(read_sound(sound)[:, 0].astype(float))
     sources.append(onsets("sound", "sound", times_ns(sound, np.arange(len(loud))), loud))
     return align(sources, frame_s)
@@ -186,8 +195,7 @@ def _motion(path: Path, arm: str) -> Onsets:
     return onsets(arm, "motion", stamps, np.linalg.norm(points - np.median(points, axis=0), axis=1))
 
 
-def _beside(bag: Path, name: str) -> Path:
-    path = bag.with_name(name)
+def _there(path: Path) -> Path:
     if not path.exists():
         raise Error(f"{path}: missing; a session with claps:=true has videos and sound beside its bag")
     return path

@@ -18,6 +18,12 @@ SIDES = ("left", "right")
 GAP_S = 0.1
 
 
+def beside(bag: Path, ending: str) -> Path:
+    """The file NAME_ending that was recorded beside NAME.bag; also of NAME.bag.active and NAME.repaired.bag."""
+    stem = bag.name.removesuffix(".active").removesuffix(".bag").removesuffix(".repaired")
+    return bag.with_name(f"{stem}_{ending}")
+
+
 @dataclass
 class Beside:
     """What was found."""
@@ -37,8 +43,7 @@ def check_beside(bag: Path, decode: bool = True) -> Beside:
     no finding.
     """
     found = Beside()
-    stem = bag.name.removesuffix(".active").removesuffix(".bag")
-    videos = {side: bag.with_name(f"{stem}_{side}.mkv") for side in SIDES}
+    videos = {side: beside(bag, f"{side}.mkv") for side in SIDES}
     try:
         announced = _announced(bag)
     except Error:
@@ -51,7 +56,7 @@ def check_beside(bag: Path, decode: bool = True) -> Beside:
             _video(video, frames, decode, found)
         elif frames is not None:
             found.add(BAD, video.name, "video", f"missing; the bag names {len(frames)} frames of it", len(frames))
-    sound = bag.with_name(f"{stem}_audio.flac")
+    sound = beside(bag, "audio.flac")
     if sound.exists():
         _sound(sound, decode, found)
     return found
@@ -149,4 +154,4 @@ def _sound(sound: Path, decode: bool, found: Beside) -> None:
     found.lines.append(text)
 
 
-__all__ = ["Beside", "check_beside"]
+__all__ = ["Beside", "beside", "check_beside"]

@@ -208,8 +208,8 @@ def _align(arguments: argparse.Namespace) -> int:
         print(json.dumps(every if len(every) > 1 else every[0], indent=1))
     else:
         for file, one in found.items():
-            print("\n".join(one.lines()))
-            print(f"{file}: {'aligned' if one.within_a_frame else 'not aligned'} within one picture")
+            *lines, verdict = one.lines()
+            print("\n".join([*lines, f"{file}: {verdict}"]))
     return 0 if all(one.within_a_frame for one in found.values()) else 1
 
 
