@@ -14,6 +14,7 @@ import numpy as np
 
 import saras
 from saras import ConfigError, Error
+from saras.dataset.annotations import read_annotations
 from saras.dataset.card import write_card
 from saras.dataset.nominal import Execution, executions, nominal
 from saras.dataset.speech import ENDINGS, Spoken, by_action, spoken
@@ -198,6 +199,7 @@ def export_session(job: Job) -> Exported:
         for file in job.calibration:
             table.notes += check_calibration(file, session)
         write_parquet(Path(job.out), table)
+        marks = read_annotations(session.topic("/recorder/annotations"), session.start_ns, [])
         facts = {
             "name": Path(job.out).stem,
             "file": f"sessions/{Path(job.out).name}",
@@ -217,7 +219,7 @@ def export_session(job: Job) -> Exported:
     said = None
     if table.speech is not None:
         facts["speech"] = {"transcript": table.speech.file, "utterances": len(table.speech.utterances)}
-        said = spoken(table.speech, table.columns["t_s"], table.columns["annotation_action"])
+        said = spoken(table.speech, marks, session.duration_s)
     return Exported(Path(job.out).stem, facts, executions(table.columns), said)
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections import Counter, defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 
 from saras import Error
 from saras.capture import sound_index
+from saras.dataset.annotations import END, Annotation
 from saras.recording import transcript
 from saras.recording.beside import beside
 from saras.recording.transcript import Utterance
@@ -78,18 +80,23 @@ def speech_columns(speech: Speech, at: Floats) -> tuple[NDArray[Any], NDArray[np
     return text, (at >= speech.begin_s) & (at <= speech.end_s)
 
 
-def spoken(speech: Speech, at: Floats, action: NDArray[Any]) -> Spoken:
-    """action: (n,) of each row. A word counts for the action in which its utterance begins."""
+def spoken(speech: Speech, annotations: Sequence[Annotation], duration_s: float) -> Spoken:
+    """A word counts for the action in which its utterance begins; time and words outside of the sound do not count.
+
+    annotations: in order of time; duration_s: of the session.
+    """
     found = Spoken()
-    order = np.argsort(at, kind="stable")
-    step_s = float(np.median(np.diff(at[order]))) if len(at) > 1 else 0.0
-    known = speech_columns(speech, at)[1]
-    for label, count in Counter(action[known].tolist()).items():
-        found.seconds[label] = count * step_s
-    for one in speech.utterances:
-        row = int(np.searchsorted(at[order], one.start_s, side="right")) - 1
-        if row >= 0 and known[order[row]]:
-            found.words.setdefault(action[order[row]], Counter()).update(map(str.casefold, _WORD.findall(one.text)))
+    begin_s, end_s = max(speech.begin_s, 0.0), min(speech.end_s, duration_s)
+    marks = [(mark.t, None if mark.label in ("", END) else mark.label) for mark in annotations if mark.kind == "action"]
+    begins = [(-math.inf, None), *marks]
+    for (since_s, label), (until_s, _) in zip(begins, [*begins[1:], (math.inf, None)]):
+        first_s, last_s = max(since_s, begin_s), min(until_s, end_s)
+        if last_s <= first_s:
+            continue
+        found.seconds[label] = found.seconds.get(label, 0.0) + last_s - first_s
+        for one in speech.utterances:
+            if first_s <= one.start_s < last_s:
+                found.words.setdefault(label, Counter()).update(map(str.casefold, _WORD.findall(one.text)))
     return found
 
 
