@@ -73,6 +73,7 @@ def seconds(who, workers, bags, folder):
 
 def run(duration_s=DURATION_S, bags=BAGS, runs=RUNS):
     """Rows of the group; ``bags`` of ``duration_s`` each for ours, and for the peer."""
+    import recording_cpu
     import synthetic_session
 
     with tempfile.TemporaryDirectory() as name:
@@ -103,7 +104,7 @@ def run(duration_s=DURATION_S, bags=BAGS, runs=RUNS):
                     "times_real_time": {"ours": times["ours"], PEER: times["rosbag"]},
                 }
             )
-        return rows
+        return rows + recording_cpu.run(files[0], 0.5 * duration_s)
 
 
 def percentiles(values):
