@@ -127,7 +127,9 @@ def _info(arguments: argparse.Namespace) -> int:
         return 0
     for one in every:
         size = one["bytes"] / 1e6
-        print(f"{one['file']}: {one['state']}, {one['duration_s']:.3f} s from {one['start']}, {size:.1f} MB, ", end="")
+        rate = f" ({one['bytes'] / 1e3 / one['duration_s']:.0f} kB/s)" if one["duration_s"] > 0.0 else ""
+        print(f"{one['file']}: {one['state']}, {one['duration_s']:.3f} s from {one['start']}, ", end="")
+        print(f"{size:.1f} MB{rate}, ", end="")
         print(f"{one['messages']} messages")
         width = max(len(row["topic"]) for row in one["topics"])
         head = ("type", "messages", "Hz", "lost", "age p50", "p99", "max ms")
