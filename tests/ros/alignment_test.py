@@ -16,9 +16,7 @@ import rostest
 from saras_ros1.msg import AudioChunk, RecorderState
 from saras_ros1.srv import StartRecording
 from std_srvs.srv import Trigger
-from support import Newest, wait_until
-
-from saras.capture.video_file import read_index
+from support import Newest, frames_in, wait_until
 
 PATIENT_S = 90.0  # pictures are drawn without a graphics card
 CLAPS = 10
@@ -43,7 +41,7 @@ class Aligned(unittest.TestCase):
         answer = rospy.ServiceProxy("/recorder/start", StartRecording)(str(path))
         self.assertTrue(answer.success, answer.message)
         videos = [path.with_name(f"session_{side}.mkv") for side in ("left", "right")]
-        wait_until(lambda: all(video.exists() and len(read_index(video)) > 5 for video in videos), "videos", PATIENT_S)
+        wait_until(lambda: all(frames_in(video) > 5 for video in videos), "videos", PATIENT_S)
         rospy.sleep(CLAPS + 2.0)
         self.stop()
         wait_until(lambda: state.message is not None and not state.message.recording, "the recorder stopped")

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import subprocess
 import sys
 import time
 from pathlib import Path
 
 import rospy
+
+from saras import Error
+from saras.capture.video_file import read_index
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
@@ -52,6 +56,13 @@ def spawn(executable, *arguments):
     """Starts a program of the package's devel space (or a path)."""
     path = executable if "/" in str(executable) else ROOT / "devel" / "lib" / "saras_ros1" / executable
     return subprocess.Popen([str(path), *arguments], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+
+def frames_in(video):
+    """So far, of a video that is perhaps being begun: its index comes a moment after it."""
+    with contextlib.suppress(OSError, Error):
+        return len(read_index(video))
+    return 0
 
 
 def pair_of_pictures(left, right, patience_s=PATIENCE_S, what=""):
