@@ -16,6 +16,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent))
 import calibration
+import capture
 import latency
 import model
 import overlay
@@ -29,7 +30,17 @@ import struct_codec
 from saras import net
 
 PYTHON_PEERS = {"teleop": ("numpy", peers.teleop), "codec": ("struct", peers.codec)}
-GROUPS = [*PYTHON_PEERS, "collision", "calibration", "latency", "overlay", "stereo_contact", "recording", "model"]
+GROUPS = [
+    *PYTHON_PEERS,
+    "collision",
+    "calibration",
+    "latency",
+    "overlay",
+    "stereo_contact",
+    "recording",
+    "capture",
+    "model",
+]
 BENCH_PYTHON = Path(__file__).parents[1] / "bench-venv" / "bin" / "python"
 TOLERANCE = 1e-9
 COLLISION_PAIRS = 100_000
@@ -112,6 +123,7 @@ def run(groups, program, soak_s=0.0):
     rows += overlay.run() if "overlay" in groups else []
     rows += stereo_contact.run() if "stereo_contact" in groups else []
     rows += recording.run() if "recording" in groups else []
+    rows += capture.run() if "capture" in groups else []
     rows += model.run() if "model" in groups else []
     return rows
 
@@ -180,7 +192,14 @@ def main():
         parser.error(f"unknown group {', '.join(sorted(unknown))}; there are {', '.join(GROUPS)}")
     try:
         rows = run(arguments.groups or list(GROUPS), arguments.program, arguments.soak)
-    except (NotTheSame, calibration.NoResult, overlay.NotTheSame, recording.NotTheSame, model.NotTheSame) as error:
+    except (
+        NotTheSame,
+        calibration.NoResult,
+        overlay.NotTheSame,
+        recording.NotTheSame,
+        model.NotTheSame,
+        capture.NoResult,
+    ) as error:
         print(f"script/bench: {error}", file=sys.stderr)
         return 1
     show(rows)
