@@ -4,6 +4,8 @@
 
 namespace saras::bindings {
 
+void bind_model_search(py::module_& m);
+
 std::vector<Vector3> load_rows(const py::object& source, const char* what) {
   const Array array = Array::ensure(source);
   if (!array || array.ndim() != 2 || array.shape(1) != 3) {
@@ -66,8 +68,11 @@ void bind_model(py::module_& m) {
   bind_model_grid(m);
   bind_model_process(m);
   bind_model_stiffness(m);
+  bind_model_registration(m);
+  bind_model_search(m);
 #ifdef SARAS_WITH_CERES
   bind_model_learning(m);
+  bind_model_deformation(m);
 #endif
 }
 

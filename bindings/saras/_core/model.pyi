@@ -9,6 +9,9 @@ import saras._core
 import typing
 
 __all__: list[str] = [
+    "CrossEntropy",
+    "Deformation",
+    "DeformationGrid",
     "EstimateStatus",
     "GpHyperparameters",
     "GpLearning",
@@ -17,6 +20,8 @@ __all__: list[str] = [
     "HashGridConfig",
     "LocalGp",
     "LocalModelConfig",
+    "Mesh",
+    "Registration",
     "SampleVerdict",
     "StiffnessGp",
     "StiffnessGpConfig",
@@ -26,6 +31,7 @@ __all__: list[str] = [
     "TouchBelief",
     "estimate_surfaces",
     "learn_hyperparameters",
+    "register_rigid",
 ]
 
 class HashGridConfig:
@@ -853,6 +859,132 @@ class StiffnessGp:
         covariances and multiplications so far
         """
 
+class Mesh:
+    """
+    Triangles with a tree for closest points.
+    """
+    def __init__(self, vertices: typing.Any, triangles: typing.Any) -> None:
+        """
+        vertices (n, 3) [m], triangles (m, 3) counter-clockwise from outside. Raises ModelError: empty, not finite, an
+        index out of range, no area, not manifold, another unit than metres.
+        """
+    def closest(self, points: typing.Any) -> tuple:
+        """
+        The closest points of the surface, as `likely`; squared distances [m^2].
+        """
+    def likely(self, points: typing.Any, covariances: typing.Any) -> tuple:
+        """
+        Where (n, 3) points with (n, 3, 3) covariances of their errors most likely came from: points (n, 3), triangles
+        (n,), barycentric weights (n, 3), squared deviations (n,).
+        """
+    @property
+    def closed(self) -> bool: ...
+    @property
+    def triangles(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        (m, 3)
+        """
+    @property
+    def vertex_normals(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) outward, area-weighted
+        """
+    @property
+    def vertices(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) [m]
+        """
+
+class Registration:
+    """
+    Where a mesh lies, and how well that is known.
+    """
+    @property
+    def base_T_mesh(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (4, 4)
+        """
+    @property
+    def converged(self) -> bool: ...
+    @property
+    def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (6, 6) of saras.displacement(estimate, truth) at the points' middle: [m, rad]
+        """
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def matches(self) -> tuple:
+        """
+        as Mesh.likely gives them, mesh frame
+        """
+    @property
+    def rms_m(self) -> float:
+        """
+        distance of the used points from the mesh [m]
+        """
+    @property
+    def used(self) -> list[bool]:
+        """
+        n flags; False: left out by the gate
+        """
+
+class CrossEntropy:
+    """
+    Minimum of a cost by the cross-entropy method: ask for candidates, tell their costs.
+    """
+    def __init__(
+        self,
+        mean: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        deviation: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        low: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        high: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        *,
+        candidates: typing.SupportsInt | typing.SupportsIndex = 48,
+        elites: typing.SupportsInt | typing.SupportsIndex = 8,
+        smoothing: typing.SupportsFloat | typing.SupportsIndex = 0.7,
+        least_deviation: typing.SupportsFloat | typing.SupportsIndex = 0.01,
+        seed: typing.SupportsInt | typing.SupportsIndex = 1,
+    ) -> None:
+        """
+        mean, deviation, low, high: (d,) of the first candidates, and bounds. Raises ConfigError.
+        """
+    def ask(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (candidates, d), the first one is the mean
+        """
+    def tell(self, costs: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> bool:
+        """
+        (candidates,) costs; not finite: no candidate. False: none was finite, nothing changed.
+        """
+    @property
+    def best(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (d,) the cheapest so far
+        """
+    @property
+    def best_cost(self) -> float:
+        """
+        infinite: none yet
+        """
+    @property
+    def deviation(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (d,)
+        """
+    @property
+    def mean(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (d,)
+        """
+    @property
+    def rounds(self) -> int: ...
+    @property
+    def settled(self) -> bool:
+        """
+        every deviation is below least_deviation of its first one
+        """
+
 class GpLearning:
     """
     Result of learn_hyperparameters.
@@ -879,6 +1011,74 @@ class GpLearning:
         places used, with repetition
         """
 
+class Deformation:
+    """
+    How a mesh is bent.
+    """
+    @property
+    def converged(self) -> bool: ...
+    @property
+    def displacements(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k, 3) of the grid's corners [m]
+        """
+    @property
+    def rms_m(self) -> float:
+        """
+        distance of the used points from the bent mesh [m]
+        """
+    @property
+    def rounds(self) -> int:
+        """
+        of matching and solving
+        """
+    @property
+    def used(self) -> list[bool]:
+        """
+        flags of the points; False: left out by the gate
+        """
+    @property
+    def vertices(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) of the bent mesh, mesh frame [m]
+        """
+
+class DeformationGrid:
+    """
+    Cubes around a mesh whose corners carry displacements.
+    """
+    def __init__(self, mesh: Mesh, spacing_m: typing.SupportsFloat | typing.SupportsIndex = 0.02) -> None:
+        """
+        Raises ModelError, ConfigError.
+        """
+    def apply(self, displacements: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) vertices moved by (k, 3) displacements of the corners.
+        """
+    def deform(
+        self,
+        points: typing.Any,
+        covariances: typing.Any = None,
+        base_T_mesh: numpy.typing.ArrayLike = ...,
+        *,
+        strain: typing.SupportsFloat | typing.SupportsIndex = 0.1,
+        travel_m: typing.SupportsFloat | typing.SupportsIndex = 0.05,
+        gate: typing.SupportsFloat | typing.SupportsIndex = 7.81,
+        max_rounds: typing.SupportsInt | typing.SupportsIndex = 20,
+        tolerance_m: typing.SupportsFloat | typing.SupportsIndex = 2e-05,
+        start: typing.Any = None,
+    ) -> Deformation:
+        """
+        Bends the mesh to (n, 3) points [m] in the base frame, with (n, 3, 3) covariances [m^2] (None: 1 mm). strain:
+        standard deviation of neighbouring corners' difference per spacing; travel_m: of a corner's way. start:
+        displacements of the last call. Raises ModelError.
+        """
+    @property
+    def corners(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k, 3) [m]
+        """
+
 def estimate_surfaces(grid: HashGrid, config: LocalModelConfig, points: typing.Any, normals: typing.Any = None) -> dict:
     """
     What is known at (n, 3) points [m]: a dict of arrays by the names of SurfaceEstimate. normals: (n, 3) outward, or
@@ -897,4 +1097,22 @@ def learn_hyperparameters(
     """
     Most probable hyper-parameters over neighbourhoods drawn from the grid, from those of config. Tenths of a second
     without the GIL; the grid must not change meanwhile. Raises ModelError when nothing can be learned from.
+    """
+
+def register_rigid(
+    mesh: Mesh,
+    points: typing.Any,
+    covariances: typing.Any = None,
+    base_T_mesh: numpy.typing.ArrayLike = ...,
+    *,
+    gate: typing.SupportsFloat | typing.SupportsIndex = 7.81,
+    mesh_noise_m: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+    max_iterations: typing.SupportsInt | typing.SupportsIndex = 100,
+    tolerance_m: typing.SupportsFloat | typing.SupportsIndex = 1e-06,
+    most_likely: bool = True,
+) -> Registration:
+    """
+    Iterative most likely point registration (Billings, Boctor, Taylor 2015). points (n, 3) [m] on the surface,
+    covariances (n, 3, 3) of their errors [m^2] (None: 1 mm), base_T_mesh (4, 4) to start from. gate: squared deviation
+    above which a point is left out; most_likely=False: plain ICP. Raises ModelError.
     """

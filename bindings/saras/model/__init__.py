@@ -1,10 +1,11 @@
-"""What touch tells of tissue: stiffness, surface, and how well both are known.
+"""What touch tells of tissue: stiffness, surface, and how well both are known; where a prior mesh lies, how it is bent.
 
 Positions are (n, 3) [m] in one base frame, forces (n, 3) [N] that the *tool exerts on the tissue* (pressing points into
 it). NaN with an infinite deviation means: not known. Samples that nothing may be learned from raise ModelError.
 """
 
 from saras._core.model import (
+    CrossEntropy,
     EstimateStatus,
     GpHyperparameters,
     HashGrid,
@@ -20,9 +21,21 @@ from saras._core.model import (
     TouchBelief,
 )
 from saras.model.learning import GpLearning, learn_hyperparameters
+from saras.model.registering import (
+    Deformation,
+    DeformationGrid,
+    Mesh,
+    Registered,
+    Registration,
+    register,
+    register_rigid,
+)
 from saras.model.stiffness_map import StiffnessMap, SurfaceEstimates
 
 __all__ = [
+    "CrossEntropy",
+    "Deformation",
+    "DeformationGrid",
     "EstimateStatus",
     "GpHyperparameters",
     "GpLearning",
@@ -30,6 +43,9 @@ __all__ = [
     "HashGridConfig",
     "LocalGp",
     "LocalModelConfig",
+    "Mesh",
+    "Registered",
+    "Registration",
     "SampleVerdict",
     "StiffnessGp",
     "StiffnessGpConfig",
@@ -40,4 +56,6 @@ __all__ = [
     "SurfaceEstimates",
     "TouchBelief",
     "learn_hyperparameters",
+    "register",
+    "register_rigid",
 ]

@@ -103,7 +103,8 @@ class StiffnessMap:
             worst = max(wrong, key=lambda name: wrong[name])
             raise ModelError(f"{wrong[worst]} of {len(x)} samples are {worst}: {self._explain(worst, x, f)}")
         for name, n in {**wrong, "NOT_TOUCHING": said["NOT_TOUCHING"]}.items():
-            self._refused[name] = self._refused.get(name, 0) + n
+            if n:
+                self._refused[name] = self._refused.get(name, 0) + n
         return self
 
     def predict(
