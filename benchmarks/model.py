@@ -132,7 +132,7 @@ def error_rows(samples: int, ours: StiffnessMap, theirs) -> list[dict]:
             f"model: {name}, {samples} samples: RMS {rms['ours']:.1f} {unit}, theirs {rms['scikit-learn']:.1f}",
             file=sys.stderr,
         )
-    # The map is there for stiffness; between samples that are dense, a process over all of them interpolates force better.
+    # The map is there for stiffness; between dense samples a process over all of them interpolates force better.
     if samples >= 10_000 and not rows[1]["ratio"]["scikit-learn"] >= 1.0:
         raise NotTheSame(f"model: scikit-learn predicts held-out stiffness better: {rows[1]}")
     return rows

@@ -23,6 +23,7 @@ import overlay
 import peers
 import pipeline
 import recording
+import registration
 import scenario
 import stereo_contact
 import struct_codec
@@ -124,7 +125,7 @@ def run(groups, program, soak_s=0.0):
     rows += stereo_contact.run() if "stereo_contact" in groups else []
     rows += recording.run() if "recording" in groups else []
     rows += capture.run() if "capture" in groups else []
-    rows += model.run() if "model" in groups else []
+    rows += model.run() + registration.run(BENCH_PYTHON) if "model" in groups else []
     return rows
 
 
