@@ -1,3 +1,4 @@
+#include "bind_csa.hpp"
 #include "rooms.hpp"
 
 PYBIND11_MODULE(_core, m) {
@@ -29,6 +30,8 @@ PYBIND11_MODULE(_core, m) {
   saras::bindings::bind_contact(contact);
   auto model = m.def_submodule("model", "What touch tells of stiffness and shape");
   saras::bindings::bind_model(model);
+  auto csa = m.def_submodule("csa", "Complementary situational awareness: controllers, fixtures, teleoperation states");
+  saras::bindings::bind_csa(csa);
 #ifdef SARAS_WITH_RUNTIME
   auto runtime = m.def_submodule("runtime", "The real-time host: loop, mailboxes, flight recorder");
   saras::bindings::bind_runtime(runtime);

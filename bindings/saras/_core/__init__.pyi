@@ -19,6 +19,7 @@ from . import pipeline
 from . import overlay
 from . import contact
 from . import model
+from . import csa
 from . import runtime
 
 __all__: list[str] = [
@@ -34,6 +35,7 @@ __all__: list[str] = [
     "collision",
     "console",
     "contact",
+    "csa",
     "displacement",
     "kinematics",
     "model",
