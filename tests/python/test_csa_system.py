@@ -1,0 +1,106 @@
+"""System files: the shipped ones, refusals that name the path in the file, and the command."""
+
+from __future__ import annotations
+
+import copy
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import saras
+from saras import cli
+
+jsonschema = pytest.importorskip("jsonschema")
+from saras.csa import system
+
+SHIPPED = sorted((Path(__file__).parents[2] / "config" / "csa").glob("*.json"))
+GOOD = json.loads(SHIPPED[0].read_text())
+
+
+def changed(change) -> dict:
+    document = copy.deepcopy(GOOD)
+    change(document)
+    return document
+
+
+def saved(tmp_path: Path, document: object) -> Path:
+    path = tmp_path / "system.json"
+    path.write_text(document if isinstance(document, str) else json.dumps(document))
+    return path
+
+
+def test_the_schema_is_one() -> None:
+    jsonschema.Draft202012Validator.check_schema(system.schema())
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_shipped_files_are_understood(path: Path) -> None:
+    loaded = system.load(path)
+    made = loaded.experiment(loaded.teleops[0])
+    teleop = loaded.document["teleops"][0]
+    assert made.teleop.scale == teleop["scale"]
+    assert made.palpation.amplitude == teleop["palpation"]["amplitude"]
+    assert made.tissue.inclusion_x_m == teleop["phantom"]["inclusion_m"][0]
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda d: d.pop("arms"), r"\$ = .*'arms' is a required property"),
+        (lambda d: d.update(version=2), r"\$\.version = 2"),
+        (lambda d: d.update(extra=1), r"\$ = .*'extra'"),
+        (lambda d: d["io"].update(period_s=0), r"\$\.io\.period_s = 0"),
+        (lambda d: d["arms"][1].update(frequency_rad_s="fast"), r"\$\.arms\[1\]\.frequency_rad_s = \"fast\""),
+        (lambda d: d["arms"][1].update(colour="red"), r"\$\.arms\[1\] = .*'colour'"),
+        (lambda d: d["arms"][1].update(type="robot"), r"\$\.arms\[1\]\.type = \"robot\""),
+        (lambda d: d["arms"][1].update(name="MTML"), r"\$\.arms\[1\]\.name = 'MTML': two arms"),
+        (lambda d: d["teleops"][0].update(scale=0), r"\$\.teleops\[0\]\.scale = 0"),
+        (lambda d: d["teleops"][0].update(slave="PSM9"), r"\$\.teleops\[0\]\.slave = 'PSM9': must be one of"),
+        (lambda d: d["teleops"][0].update(slave="MTML"), r"\$\.teleops\[0\]\.slave = 'MTML': is taken"),
+        (lambda d: d["teleops"][0].update(master="PSM1", slave="MTML"), r"\.master = 'PSM1': is a simulated_psm"),
+        (lambda d: d["teleops"].append(dict(d["teleops"][0])), r"\$\.teleops\[1\]\.name = .*two teleoperations"),
+        (lambda d: d["teleops"][0]["palpation"].update(kind="rub"), r"\$\.teleops\[0\]\.palpation\.kind = \"rub\""),
+        (lambda d: d["teleops"][0]["fixtures"][0].pop("half_width_m"), r"\$\.teleops\[0\]\.fixtures\[0\] = "),
+        (lambda d: d["teleops"][0].update(desired_force_N=9.0), r"\$\.teleops\[0\]: desired_force_N = 9"),
+        (lambda d: d["arms"][0].update(capabilities=["measured_cp"]), r"\$\.arms\[0\]\.capabilities = .*its torque"),
+        (lambda d: d["arms"][0].update(capabilities=["servo_jf"]), r"\$\.arms\[0\]\.capabilities = .*its position"),
+        (lambda d: d["arms"][1].update(capabilities=["servo_jp"]), r"\.arms\[1\]\.capabilities = .*a source of force"),
+        (lambda d: d["arms"][1].update(capabilities=["measured_cf"]), r"\.arms\[1\]\.capabilities = .*joint positions"),
+    ],
+)  # fmt: skip
+def test_refusals_name_the_path_in_the_file(tmp_path: Path, change, words: str) -> None:
+    with pytest.raises(saras.ConfigError, match=words) as told:
+        system.load(saved(tmp_path, changed(change)))
+    assert "system.json" in str(told.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("{", "no JSON"),
+        ('{"version": 1, "version": 1}', "given twice"),
+        ('{"version": NaN}', "NaN is no number"),
+        ("[" * 100_000, "no JSON"),
+        ("[]", r"\$ = \[\]"),
+    ],
+)
+def test_what_is_no_json_is_refused(tmp_path: Path, text: str, words: str) -> None:
+    with pytest.raises(saras.ConfigError, match=words):
+        system.load(saved(tmp_path, text))
+    with pytest.raises(saras.ConfigError, match="cannot be read"):
+        system.load(tmp_path / "nowhere.json")
+
+
+def test_the_command_checks_and_runs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["csa", "check", str(SHIPPED[0])]) == 0
+    assert "MTML -> PSM1" in capsys.readouterr().out
+    arrays = tmp_path / "run.npz"
+    assert cli.main(["csa", "run", str(SHIPPED[0]), "--duration", "5", "--npz", str(arrays)]) == 0
+    out = capsys.readouterr().out
+    assert "FULL_CONTACT" in out and "holds: none" in out
+    result = np.load(arrays)
+    assert len(result["t"]) == 5000 and np.isfinite(result["normal_force_N"]).all()
+    assert cli.main(["csa", "run", str(SHIPPED[0]), "--duration", "1"]) == 2
+    assert "[5, 600]" in capsys.readouterr().err
