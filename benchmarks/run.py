@@ -17,6 +17,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parent))
 import calibration
 import capture
+import exploration
 import latency
 import model
 import overlay
@@ -125,7 +126,7 @@ def run(groups, program, soak_s=0.0):
     rows += stereo_contact.run() if "stereo_contact" in groups else []
     rows += recording.run() if "recording" in groups else []
     rows += capture.run() if "capture" in groups else []
-    rows += model.run() + registration.run(BENCH_PYTHON) if "model" in groups else []
+    rows += model.run() + registration.run(BENCH_PYTHON) + exploration.run() if "model" in groups else []
     return rows
 
 

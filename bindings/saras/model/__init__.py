@@ -20,6 +20,7 @@ from saras._core.model import (
     SurfaceEstimate,
     TouchBelief,
 )
+from saras.model.exploring import CostError, Plan, TrajectoryOptimizer
 from saras.model.learning import GpLearning, learn_hyperparameters
 from saras.model.registering import (
     Deformation,
@@ -33,6 +34,7 @@ from saras.model.registering import (
 from saras.model.stiffness_map import StiffnessMap, SurfaceEstimates
 
 __all__ = [
+    "CostError",
     "CrossEntropy",
     "Deformation",
     "DeformationGrid",
@@ -44,6 +46,7 @@ __all__ = [
     "LocalGp",
     "LocalModelConfig",
     "Mesh",
+    "Plan",
     "Registered",
     "Registration",
     "SampleVerdict",
@@ -55,6 +58,7 @@ __all__ = [
     "SurfaceEstimate",
     "SurfaceEstimates",
     "TouchBelief",
+    "TrajectoryOptimizer",
     "learn_hyperparameters",
     "register",
     "register_rigid",

@@ -67,7 +67,8 @@ class Phantom:
         velocity = np.zeros_like(at) if velocities is None else np.asarray(velocities, dtype=float) @ base_R_surface
         depth = np.maximum(self.depth(points), 0.0)[:, None]
         normal = self.normal(points) @ base_R_surface
-        stiffness, gradient = (part.reshape(len(at), -1) for part in self._stiffness(at))
+        stiffness, gradient = self._stiffness(at)
+        stiffness = stiffness[:, None]
         power = depth**tissue.exponent
         energy_gradient = power * depth / (tissue.exponent + 1.0) * gradient - stiffness * power * normal
         touching = depth > 0.0
