@@ -32,6 +32,7 @@ from saras.model.registering import (
     register_rigid,
 )
 from saras.model.stiffness_map import StiffnessMap, SurfaceEstimates
+from saras.model.storage import StiffMesh
 
 __all__ = [
     "CostError",
@@ -50,6 +51,7 @@ __all__ = [
     "Registered",
     "Registration",
     "SampleVerdict",
+    "StiffMesh",
     "StiffnessGp",
     "StiffnessGpConfig",
     "StiffnessGpOutput",
