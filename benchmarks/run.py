@@ -17,6 +17,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parent))
 import calibration
 import capture
+import csa
 import exploration
 import latency
 import model
@@ -42,6 +43,7 @@ GROUPS = [
     "recording",
     "capture",
     "model",
+    "csa",
 ]
 BENCH_PYTHON = Path(__file__).parents[1] / "bench-venv" / "bin" / "python"
 TOLERANCE = 1e-9
@@ -120,6 +122,8 @@ def run(groups, program, soak_s=0.0):
     rows = run_python_peers(python_groups, program) if python_groups else []
     rows += run_collision(program) if "collision" in groups else []
     rows += calibration.run(BENCH_PYTHON) if "calibration" in groups else []
+    if "csa" in groups:
+        rows += csa.run(program.with_name("saras_csa_benchmark"), BENCH_PYTHON)
     if "latency" in groups:
         rows += latency.run(program.with_name("saras_latency_benchmark"), soak_s)
     rows += overlay.run() if "overlay" in groups else []
@@ -201,6 +205,7 @@ def main():
         recording.NotTheSame,
         model.NotTheSame,
         capture.NoResult,
+        csa.NotTheSame,
     ) as error:
         print(f"script/bench: {error}", file=sys.stderr)
         return 1
