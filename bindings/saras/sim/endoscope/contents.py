@@ -61,9 +61,8 @@ class Contents:
     def _add(self, label: str, actor: Any, world_T: Array, *, specular: float = 0.0, lit: bool = True) -> None:
         look = actor.GetProperty()
         look.SetInterpolationToPhong()
-        look.SetLighting(lit)
-        look.SetAmbient(0.16)
-        look.SetDiffuse(0.95)
+        look.SetAmbient(0.16 if lit else 1.0)
+        look.SetDiffuse(0.95 if lit else 0.0)
         look.SetSpecular(specular)
         look.SetSpecularPower(14.0)
         _put(actor, world_T)
