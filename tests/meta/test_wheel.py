@@ -27,13 +27,13 @@ def fresh_python(tmp_path_factory: pytest.TempPathFactory) -> Path:
     base = getattr(sys, "_base_executable", sys.executable)
     assert run(base, "-m", "venv", where / "venv", cwd=where).returncode == 0
     python = where / "venv" / "bin" / "python"
-    done = run(python, "-m", "pip", "install", "--quiet", f"{ROOT}[plot,calibration]", cwd=where)
+    done = run(python, "-m", "pip", "install", "--quiet", f"{ROOT}[plot,calibration,csa]", cwd=where)
     assert done.returncode == 0, done.stderr[-3000:]
     return python
 
 
 def test_it_imports_without_ros(fresh_python: Path, tmp_path: Path) -> None:
-    rooms = "import saras.teleop, saras.kinematics, saras.sim, saras.net, saras.calibration"
+    rooms = "import saras.teleop, saras.kinematics, saras.sim, saras.net, saras.calibration, saras.csa, saras.model"
     done = run(fresh_python, "-c", rooms, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert run(fresh_python, "-c", "import rospy", cwd=tmp_path).returncode != 0
