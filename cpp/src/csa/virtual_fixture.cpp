@@ -169,6 +169,19 @@ int rows_of(const FixtureGeometry& geometry) {
   return std::holds_alternative<PlaneFixture>(geometry) ? 1 : kTubeDirections + 2;
 }
 
+// Not std::visit, which throws for a variant without a value: a tick does not throw.
+template <class... Geometries>
+Finding evaluate_any(const std::variant<Geometries...>& geometry, Query& query, int& feature) noexcept {
+  Finding finding;
+  const auto evaluate_if = [&](const auto* held) {
+    if (held != nullptr) {
+      finding = evaluate(*held, query, feature);
+    }
+  };
+  (evaluate_if(std::get_if<Geometries>(&geometry)), ...);
+  return finding;
+}
+
 struct Check {
   const std::string& fixture;
   std::string field(const char* name) const { return fixture + "." + name; }
@@ -272,8 +285,7 @@ FixtureOutput FixtureSet::step(const FixtureInput& input, Seconds dt) noexcept {
     const Fixture& fixture = (*fixtures_)[i];
     Query query{tip, shaft, static_cast<int>(i), fixture.soft, output.rows};
     int& feature = state_.feature[i];
-    const Finding finding =
-        std::visit([&](const auto& geometry) { return evaluate(geometry, query, feature); }, fixture.geometry);
+    const Finding finding = evaluate_any(fixture.geometry, query, feature);
     output.distance_m[i] = finding.distance_m;
     if (finding.distance_m < least) {
       least = finding.distance_m;

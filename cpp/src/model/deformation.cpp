@@ -142,6 +142,7 @@ class Bending {
       }
       auto weights = grid_.weights(triangle, matches_[i].barycentric);
       std::vector<double*> blocks;
+      blocks.reserve(weights.size());
       for (const auto& [corner, weight] : weights) {
         blocks.push_back(block(corner));
       }
