@@ -49,6 +49,7 @@ class StereoContactNode(Node):
         self.quality = {side: self.output(f"/contact/{side}/quality", ContactQuality) for side in SIDES}
         self.estimator: tuple[tuple[Eye, Eye], StereoContact] | None = None
         self.seen_stamp: rospy.Time | None = None
+        self.unknown_since: rospy.Time | None = None
         self.shown: dict[str, ContactEstimate] = {}
         self.frames_seen = self.counted = 0
         self.busy_s = self.worst_s = 0.0
@@ -65,12 +66,15 @@ class StereoContactNode(Node):
         if pair.stamp == self.seen_stamp:
             return
         self.seen_stamp = pair.stamp
+        if self.unknown_since is not None and pair.stamp <= self.unknown_since:
+            return  # taken before "unknown" was said: stamps never go back
         begin = time.perf_counter()
         try:
             found = self._estimate(pair)
         except (UnknownFrameError, UnknownToolError, ConfigError) as error:
             self._publish_unknown(str(error), pair.stamp)
             return
+        self.unknown_since = None
         for side in SIDES:
             self._publish(side, found[side], pair.stamp)
         took = time.perf_counter() - begin
@@ -101,8 +105,13 @@ class StereoContactNode(Node):
         return found
 
     def _publish_unknown(self, reason: str, stamp: rospy.Time | None = None) -> None:
+        """Stamped with when it became unknown: a picture taken later that arrives late still counts."""
+        if stamp is not None:
+            self.unknown_since = stamp
+        elif self.unknown_since is None:
+            self.unknown_since = rospy.Time.now()
         for side in SIDES:
-            self._publish(side, ContactEstimate(False, reason=reason), stamp or rospy.Time.now())
+            self._publish(side, ContactEstimate(False, reason=reason), self.unknown_since)
 
     def _publish(self, side: str, found: ContactEstimate, stamp: rospy.Time) -> None:
         direction = np.zeros(3)
