@@ -84,6 +84,25 @@ class DirectConnection:
             link.close()
 
 
+def _publish(publisher: Any, message: Any, connection_override: Any = None) -> Any:
+    """As roscpp: a latched message keeps its number when it goes to a late subscriber.
+
+    rospy counts it anew, which looks like a lost message to every other subscriber, and in the bag.
+    """
+    if connection_override is None:
+        return _rospy_publish(publisher, message)
+    before = publisher.seq
+    publisher.seq = max(0, before - 1)
+    try:
+        return _rospy_publish(publisher, message, connection_override)
+    finally:
+        publisher.seq = max(before, publisher.seq)
+
+
+_rospy_publish = rospy.topics._PublisherImpl.publish
+
+
 def install() -> None:
     """Makes every rospy publisher of this process use DirectConnection. Before the first Publisher."""
     rospy.topics.QueuedConnection = DirectConnection
+    rospy.topics._PublisherImpl.publish = _publish

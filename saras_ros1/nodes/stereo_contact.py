@@ -49,7 +49,7 @@ class StereoContactNode(Node):
         self.quality = {side: self.output(f"/contact/{side}/quality", ContactQuality) for side in SIDES}
         self.estimator: tuple[tuple[Eye, Eye], StereoContact] | None = None
         self.seen_stamp: rospy.Time | None = None
-        self.unknown_since: rospy.Time | None = None
+        self.said_stamp = rospy.Time()
         self.shown: dict[str, ContactEstimate] = {}
         self.frames_seen = self.counted = 0
         self.busy_s = self.worst_s = 0.0
@@ -66,15 +66,14 @@ class StereoContactNode(Node):
         if pair.stamp == self.seen_stamp:
             return
         self.seen_stamp = pair.stamp
-        if self.unknown_since is not None and pair.stamp <= self.unknown_since:
-            return  # taken before "unknown" was said: stamps never go back
+        if pair.stamp <= self.said_stamp:
+            return  # later than that "unknown" was said already: stamps never go back
         begin = time.perf_counter()
         try:
             found = self._estimate(pair)
         except (UnknownFrameError, UnknownToolError, ConfigError) as error:
             self._publish_unknown(str(error), pair.stamp)
             return
-        self.unknown_since = None
         for side in SIDES:
             self._publish(side, found[side], pair.stamp)
         took = time.perf_counter() - begin
@@ -105,13 +104,10 @@ class StereoContactNode(Node):
         return found
 
     def _publish_unknown(self, reason: str, stamp: rospy.Time | None = None) -> None:
-        """Stamped with when it became unknown: a picture taken later that arrives late still counts."""
-        if stamp is not None:
-            self.unknown_since = stamp
-        elif self.unknown_since is None:
-            self.unknown_since = rospy.Time.now()
+        """Without a picture it is stamped as old as one that would still count, so that one on its way does count."""
+        stamp = stamp or max(self.said_stamp, rospy.Time.now() - rospy.Duration(self.pairs.timeout_s))
         for side in SIDES:
-            self._publish(side, ContactEstimate(False, reason=reason), self.unknown_since)
+            self._publish(side, ContactEstimate(False, reason=reason), stamp)
 
     def _publish(self, side: str, found: ContactEstimate, stamp: rospy.Time) -> None:
         direction = np.zeros(3)
@@ -120,6 +116,7 @@ class StereoContactNode(Node):
                 direction = self.live.fresh(WORLD, base_frame(side))[:3, :3].T @ found.normal
             except UnknownFrameError as error:
                 found = ContactEstimate(False, reason=str(error))
+        self.said_stamp = stamp
         message = Contact(depth=found.depth_m, direction=Vector3(*direction))
         message.header.stamp, message.header.frame_id = stamp, base_frame(side)
         self.contact[side].publish(message)

@@ -12,7 +12,9 @@ rospy = pytest.importorskip("rospy")
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from rospy.exceptions import TransportTerminated
+from std_msgs.msg import Header
 
+from saras_ros1 import direct_publishing
 from saras_ros1.direct_publishing import DirectConnection
 
 PATIENCE_S = 30.0
@@ -107,3 +109,43 @@ def test_a_connection_that_rospy_closed_ends_its_thread():
     with pytest.raises(TransportTerminated):
         connection.write_data(framed(b"more"))
     theirs.close()
+
+
+class Heard:
+    """A subscriber that notes the number of each message it gets."""
+
+    def __init__(self):
+        self.seq, self.endpoint_id = [], "/peer"
+        self._ends = socket.socketpair()  # rospy polls each connection
+
+    def fileno(self):
+        return self._ends[0].fileno()
+
+    def write_data(self, data):
+        self.seq.append(Header().deserialize(data[4:]).seq)
+
+
+@given(moves=st.lists(st.sampled_from(["publish", "subscribe"]), max_size=30))
+def test_late_subscribers_of_a_latched_topic_leave_no_gap_to_the_others(moves, monkeypatch_of_publish):
+    publisher = rospy.topics._PublisherImpl("/latched", Header)
+    publisher.enable_latch()
+    heard = []
+    for move in moves:
+        if move == "publish":
+            publisher.acquire()
+            publisher.publish(Header(frame_id="world"))
+            publisher.release()
+        else:
+            heard.append(Heard())
+            publisher.add_connection(heard[-1])
+    for peer in heard:
+        assert all(after == before + 1 for before, after in zip(peer.seq, peer.seq[1:]))
+    last = {peer.seq[-1] for peer in heard if peer.seq}
+    assert len(last) <= 1  # the last message has one number, whoever got it when
+
+
+@pytest.fixture(scope="module")
+def monkeypatch_of_publish():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(rospy.topics._PublisherImpl, "publish", direct_publishing._publish)
+        yield
