@@ -9,10 +9,10 @@ from types import SimpleNamespace
 import pytest
 
 rospy = pytest.importorskip("rospy")
+from geometry_msgs.msg import PointStamped
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from rospy.exceptions import TransportTerminated
-from std_msgs.msg import Header
 
 from saras_ros1 import direct_publishing
 from saras_ros1.direct_publishing import DirectConnection
@@ -115,25 +115,28 @@ class Heard:
     """A subscriber that notes the number of each message it gets."""
 
     def __init__(self):
-        self.seq, self.endpoint_id = [], "/peer"
+        self.seq, self.endpoint_id, self.cleanup_cb = [], f"/peer{id(self)}", None
         self._ends = socket.socketpair()  # rospy polls each connection
 
     def fileno(self):
         return self._ends[0].fileno()
 
+    def set_cleanup_callback(self, callback):
+        self.cleanup_cb = callback
+
     def write_data(self, data):
-        self.seq.append(Header().deserialize(data[4:]).seq)
+        self.seq.append(PointStamped().deserialize(data[4:]).header.seq)
 
 
 @given(moves=st.lists(st.sampled_from(["publish", "subscribe"]), max_size=30))
 def test_late_subscribers_of_a_latched_topic_leave_no_gap_to_the_others(moves, monkeypatch_of_publish):
-    publisher = rospy.topics._PublisherImpl("/latched", Header)
+    publisher = rospy.topics._PublisherImpl("/latched", PointStamped)
     publisher.enable_latch()
     heard = []
     for move in moves:
         if move == "publish":
             publisher.acquire()
-            publisher.publish(Header(frame_id="world"))
+            publisher.publish(PointStamped())
             publisher.release()
         else:
             heard.append(Heard())
