@@ -15,7 +15,7 @@ import synthetic_session as synthetic
 import saras
 from saras import cli
 from saras.recording import Session
-from saras.recording.completeness import Bounds, check, expected_topics, lost_by_sequence, steps_of_clock
+from saras.recording.completeness import Bounds, check, expected_topics, lost_by_sequence
 from saras.recording.repair import default_out, repair
 from saras.recording.survey import survey
 
@@ -303,13 +303,6 @@ def test_a_stepping_clock_is_found_with_size_and_sign(tmp_path, jump_s):
     assert found["bad", "step"].value == pytest.approx(jump_s, abs=1e-3)
     assert "at 3.000 s" in found["bad", "step"].text
     assert (("bad", "order") in found) == (jump_s < 0)
-
-
-def test_a_held_up_bunch_is_no_step_of_a_clock():
-    stamp = np.arange(600) * 10_000_000
-    received = stamp.copy()
-    received[200:300] = received[300]
-    assert steps_of_clock(received, stamp, 0.2) == []
 
 
 def test_stamps_of_the_future_and_old_ones_are_told(tmp_path):

@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from saras import ConfigError, Error
-from saras.recording.survey import Integers, Publisher, Survey
+from saras.recording.clock_steps import agrees_with_node, steps_of_clock
+from saras.recording.survey import Publisher, Survey
 
 GOOD, WARNING, BAD, UNKNOWN = "good", "warning", "bad", "unknown"
 _ENOUGH = 20  # messages that make a rate
-_AROUND = 11  # messages before and after a step of the clock
 
 
 @dataclass(frozen=True)
@@ -188,29 +188,6 @@ def _order(publisher: Publisher, survey: Survey, bounds: Bounds) -> list[Finding
     return findings
 
 
-def steps_of_clock(received_ns: Integers, stamp_ns: Integers, bound_s: float) -> list[tuple[int, float]]:
-    """Where the stamps jump against the receptions by more than ``bound_s`` and stay there.
-
-    Index of the first message after it, and jump [s]. Messages that were held up and arrive in a bunch are none: their
-    stamps go on as before. Nor is a publisher that paused: then receptions jump too.
-    """
-    if len(stamp_ns) < _ENOUGH:
-        return []
-    age = (received_ns - stamp_ns) * 1e-9
-    advance, period = np.diff(stamp_ns) * 1e-9, np.diff(received_ns) * 1e-9
-    nominal = np.median(period)
-    odd = np.abs(advance - np.median(advance)) > 0.5 * bound_s
-    odd &= (period > 0.2 * nominal) & (period < 3.0 * nominal)
-    found: list[tuple[int, float]] = []
-    for at in np.flatnonzero(odd & (np.abs(np.diff(age)) > 0.5 * bound_s)) + 1:
-        if found and at - found[-1][0] < _AROUND:
-            continue
-        jump = float(np.median(age[max(0, at - _AROUND) : at]) - np.median(age[at : at + _AROUND]))
-        if abs(jump) > bound_s:
-            found.append((int(at), jump))
-    return found
-
-
 def _age(publisher: Publisher, survey: Survey, bounds: Bounds) -> list[Finding]:
     age = publisher.age_s
     if age is None or publisher.stamp_ns is None or publisher.latched or not len(age):
@@ -219,8 +196,14 @@ def _age(publisher: Publisher, survey: Survey, bounds: Bounds) -> list[Finding]:
     stamped = publisher.stamp_ns != 0
     received = publisher.received_ns[stamped]
     for at, jump in steps_of_clock(received, publisher.stamp_ns[stamped], bounds.step_s):
-        text = f"the stamps step by {jump:+.3f} s {_at(survey, int(received[at]))}"
-        findings.append(Finding(BAD, publisher.topic, "step", text, jump))
+        moment_ns = int(received[at])
+        if agrees_with_node(publisher, survey.publishers, moment_ns, jump):
+            text = f"the stamps step by {jump:+.3f} s {_at(survey, moment_ns)}"
+            findings.append(Finding(BAD, publisher.topic, "step", text, jump))
+        else:
+            change = f"{abs(jump):.3f} s {'older' if jump < 0 else 'younger'}"
+            text = f"what it tells becomes {change} {_at(survey, moment_ns)}, its node's clock goes on evenly"
+            findings.append(Finding(WARNING, publisher.topic, "age", text, -jump))
     p99 = float(np.percentile(age, 99))
     if p99 > bounds.age_s:
         text = f"p99 of the age {p99 * 1e3:.1f} ms, the oldest {age.max() * 1e3:.1f} ms"
