@@ -16,7 +16,8 @@ jsonschema = pytest.importorskip("jsonschema")
 from saras.csa import system
 
 SHIPPED = sorted((Path(__file__).parents[2] / "config" / "csa").glob("*.json"))
-GOOD = json.loads(SHIPPED[0].read_text())
+SIMULATED = Path(__file__).parents[2] / "config" / "csa" / "simulated.json"
+GOOD = json.loads(SIMULATED.read_text())
 
 
 def changed(change) -> dict:
@@ -38,11 +39,20 @@ def test_the_schema_is_one() -> None:
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_shipped_files_are_understood(path: Path) -> None:
     loaded = system.load(path)
-    made = loaded.experiment(loaded.teleops[0])
-    teleop = loaded.document["teleops"][0]
-    assert made.teleop.scale == teleop["scale"]
+    made, teleop = loaded.setup(loaded.teleops[0]), loaded.document["teleops"][0]
+    assert made.teleop_config().scale == teleop["scale"]
+    assert made.palpation().amplitude == teleop["palpation"].get("amplitude", 0.0)
+    assert made.slave_config().arm_lag_s == 2.0 / made.slave["frequency_rad_s"]
+    for outcome in (made.surface().touch(made.start()), made.compliance_config(), made.fixtures()):
+        assert outcome is not None
+
+
+def test_a_file_is_simulated_as_it_says() -> None:
+    made, teleop = system.load(SIMULATED).experiment(), GOOD["teleops"][0]
+    assert made.teleop.scale == teleop["scale"] and made.dt_s == GOOD["io"]["period_s"]
     assert made.palpation.amplitude == teleop["palpation"]["amplitude"]
     assert made.tissue.inclusion_x_m == teleop["phantom"]["inclusion_m"][0]
+    assert made.region_m == teleop["fixtures"][0]["half_width_m"]
 
 
 @pytest.mark.parametrize(
@@ -68,6 +78,14 @@ def test_shipped_files_are_understood(path: Path) -> None:
         (lambda d: d["arms"][0].update(capabilities=["servo_jf"]), r"\$\.arms\[0\]\.capabilities = .*its position"),
         (lambda d: d["arms"][1].update(capabilities=["servo_jp"]), r"\.arms\[1\]\.capabilities = .*a source of force"),
         (lambda d: d["arms"][1].update(capabilities=["measured_cf"]), r"\.arms\[1\]\.capabilities = .*joint positions"),
+        (lambda d: d["arms"][1].update(capabilities=["servo_jp", "measured_cf"]), r"\.capabilities = .*its joints"),
+        (lambda d: d["arms"][1].update(tool="spoon"), r"\$\.teleops\[0\]: .*spoon"),
+        (lambda d: d["arms"][1].update(force={"topic": "no topic"}), r"\$\.arms\[1\]\.force\.topic = \"no topic\""),
+        (lambda d: d["teleops"][0].update(scheduled=False), r"\$\.teleops\[0\]: admittance_m_Ns = 0\.05"),
+        (lambda d: d["teleops"][0].pop("phantom"), r"\$\.teleops\[0\]: model: is needed"),
+        (lambda d: d["teleops"][0].update(model={"type": "plane"}), r"\$\.teleops\[0\]\.model = .*'point_m'"),
+        (lambda d: d["teleops"][0].update(model={"type": "cloud"}), r"\$\.teleops\[0\]\.model\.type = \"cloud\""),
+        (lambda d: d["teleops"][0].update(model={"type": "mesh", "file": "no.stl"}), r"\$\.teleops\[0\]: .*no\.stl"),
     ],
 )  # fmt: skip
 def test_refusals_name_the_path_in_the_file(tmp_path: Path, change, words: str) -> None:
@@ -94,13 +112,13 @@ def test_what_is_no_json_is_refused(tmp_path: Path, text: str, words: str) -> No
 
 
 def test_the_command_checks_and_runs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert cli.main(["csa", "check", str(SHIPPED[0])]) == 0
+    assert cli.main(["csa", "check", str(SIMULATED)]) == 0
     assert "MTML -> PSM1" in capsys.readouterr().out
     arrays = tmp_path / "run.npz"
-    assert cli.main(["csa", "run", str(SHIPPED[0]), "--duration", "5", "--npz", str(arrays)]) == 0
+    assert cli.main(["csa", "run", str(SIMULATED), "--duration", "5", "--npz", str(arrays)]) == 0
     out = capsys.readouterr().out
     assert "FULL_CONTACT" in out and "holds: none" in out
     result = np.load(arrays)
     assert len(result["t"]) == 5000 and np.isfinite(result["normal_force_N"]).all()
-    assert cli.main(["csa", "run", str(SHIPPED[0]), "--duration", "1"]) == 2
+    assert cli.main(["csa", "run", str(SIMULATED), "--duration", "1"]) == 2
     assert "[5, 600]" in capsys.readouterr().err

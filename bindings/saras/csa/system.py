@@ -12,23 +12,23 @@ from importlib import resources
 from pathlib import Path
 from typing import Any, cast
 
-from saras import ConfigError, csa, sim
+from saras import ConfigError, sim
+from saras.csa import arms
+from saras.csa.setup import Setup
 from saras.csa.simulation import CsaExperiment
 
 #: Bytes of a file; a hundred times what four teleoperations need.
 MAX_BYTES = 1 << 20
 
-#: What the simulated arms can do when the file does not list it.
-CAPABILITIES = {
-    "simulated_hand": ["measured_cp", "servo_cf"],
-    "simulated_psm": ["measured_js", "measured_cp", "measured_cf", "servo_jp"],
-}
 #: What a role needs: any one of each row, and what it is for.
 NEEDS = {
     "master": ((("measured_cp",), "its position"), (("servo_jf", "servo_cf"), "its torque")),
-    "slave": ((("servo_jp",), "joint positions"), (("measured_cf",), "a source of force")),
+    "slave": (
+        (("servo_jp",), "joint positions"),
+        (("measured_cf",), "a source of force"),
+        (("measured_js",), "its joints"),
+    ),
 }
-ROLES = {"master": ("simulated_hand",), "slave": ("simulated_psm",)}
 
 Json = dict[str, Any]
 
@@ -51,40 +51,51 @@ class System:
         """Names, in the order of the file."""
         return [teleop["name"] for teleop in self.document["teleops"]]
 
-    def experiment(self, teleop: str | None = None, duration_s: float = 12.0) -> CsaExperiment:
-        """The simulation of one teleoperation, the first by default. Raises ConfigError for a name that is none."""
+    def setup(self, teleop: str | None = None) -> Setup:
+        """One teleoperation, the first by default. Raises ConfigError for a name that is none."""
         names = self.teleops
         if teleop is not None and teleop not in names:
             raise ConfigError(f"{self.path}: teleop {teleop!r}: must be one of {', '.join(names)}")
         found = self.document["teleops"][names.index(teleop) if teleop else 0]
-        arms = {arm["name"]: arm for arm in self.document["arms"]}
+        by_name = {arm["name"]: arm for arm in self.document["arms"]}
+        io = self.document.get("io", {})
+        return Setup(
+            path=self.path,
+            name=found["name"],
+            teleop=found,
+            master=by_name[found["master"]],
+            slave=by_name[found["slave"]],
+            period_s=io.get("period_s", 0.001),
+            timeout_s=io.get("timeout_s", 0.1),
+            latency_s=io.get("latency_s", 0.002),
+            start_timeout_s=io.get("start_timeout_s", 10.0),
+            master_model=arms.master_model(by_name[found["master"]]),
+            slave_model=arms.slave_model(by_name[found["slave"]]),
+        )
+
+    def experiment(self, teleop: str | None = None, duration_s: float = 12.0) -> CsaExperiment:
+        """The simulation of one teleoperation of a hand and a PSM, the first by default. Raises ConfigError."""
+        setup = self.setup(teleop)
+        for arm, known in ((setup.master, "simulated_hand"), (setup.slave, "simulated_psm")):
+            if arm["type"] != known:
+                raise ConfigError(
+                    f"{self.path}: {arm['name']} is a {arm['type']}: saras csa run simulates a {known}; "
+                    "roslaunch saras_ros1 csa.launch has the others"
+                )
         made = CsaExperiment(duration_s=duration_s)
-        made.dt_s = self.document.get("io", {}).get("period_s", made.dt_s)
-        made.arm_frequency_rad_s = arms[found["slave"]].get("frequency_rad_s", made.arm_frequency_rad_s)
-        made.hand = getattr(sim.OperatorConfig, arms[found["master"]].get("grip", "firm"))()
-        made.teleop = csa.CsaTeleopConfig(
-            **{
-                name: found[name]
-                for name in ("scale", "desired_force_N", "stiffness_N_m", "mismatch_tolerance_m")
-                if name in found
-            }
-        )
-        made.admittance_m_Ns = found.get("admittance_m_Ns", made.admittance_m_Ns)
-        palpation = found.get("palpation", {"kind": "none"})
-        made.palpation = csa.Palpation(
-            kind=getattr(csa.PalpationKind, palpation["kind"].upper()),
-            amplitude=palpation.get("amplitude", 0.0),
-            frequency_hz=palpation.get("frequency_hz", 1.0),
-        )
-        fixtures = found.get("fixtures", [])
-        made.region_m = fixtures[0]["half_width_m"] if fixtures else None
-        phantom = found.get("phantom", {})
+        made.dt_s = setup.period_s
+        made.arm_frequency_rad_s = setup.slave.get("frequency_rad_s", made.arm_frequency_rad_s)
+        made.hand = getattr(sim.OperatorConfig, setup.master.get("grip", "firm"))()
+        made.teleop = setup.teleop_config()
+        made.admittance_m_Ns = setup.teleop.get("admittance_m_Ns", made.admittance_m_Ns)
+        made.palpation = setup.palpation()
+        regions = [fixture for fixture in setup.teleop.get("fixtures", []) if fixture["type"] == "region"]
+        made.region_m = regions[0]["half_width_m"] if regions else None
+        phantom = setup.phantom()
         made.height_m = phantom.get("height_m", made.height_m)
         made.model_error_m = phantom.get("model_error_m", made.model_error_m)
-        tissue = {name: phantom[name] for name in ("stiffness_N_m", "inclusion_stiffness_N_m") if name in phantom}
-        if "inclusion_m" in phantom:
-            tissue["inclusion_x_m"], tissue["inclusion_y_m"] = phantom["inclusion_m"]
-        made.tissue = sim.TissueConfig(**tissue)
+        made.stiffness_known = phantom.get("stiffness_known", made.stiffness_known)
+        made.tissue = setup.tissue_config()
         return made
 
 
@@ -106,7 +117,7 @@ def load(path: str | Path) -> System:
     system = System(path, document)
     for index, name in enumerate(system.teleops):
         try:
-            system.experiment(name)
+            system.setup(name).check()
         except ConfigError as error:  # what only the controllers know
             raise ConfigError(f"{path}: $.teleops[{index}]: {error}") from error
     return system
@@ -154,11 +165,11 @@ def _check_schema(path: Path, document: Any) -> None:
 
 def _check_roles(path: Path, document: Json) -> None:
     """Names, and whether each arm can do what its role asks."""
-    arms: dict[str, tuple[int, Json]] = {}
+    by_name: dict[str, tuple[int, Json]] = {}
     for index, arm in enumerate(document["arms"]):
-        if arm["name"] in arms:
+        if arm["name"] in by_name:
             raise ConfigError(f"{path}: $.arms[{index}].name = {arm['name']!r}: two arms have this name")
-        arms[arm["name"]] = (index, arm)
+        by_name[arm["name"]] = (index, arm)
     names: set[str] = set()
     busy: dict[str, str] = {}
     for index, teleop in enumerate(document["teleops"]):
@@ -168,15 +179,16 @@ def _check_roles(path: Path, document: Json) -> None:
         names.add(teleop["name"])
         for role, needs in NEEDS.items():
             name = teleop[role]
-            if name not in arms:
-                raise ConfigError(f"{where}.{role} = {name!r}: must be one of the arms {', '.join(arms)}")
+            if name not in by_name:
+                raise ConfigError(f"{where}.{role} = {name!r}: must be one of the arms {', '.join(by_name)}")
             if name in busy:
                 raise ConfigError(f"{where}.{role} = {name!r}: is taken by the teleoperation {busy[name]}")
             busy[name] = teleop["name"]
-            arm_index, arm = arms[name]
-            if arm["type"] not in ROLES[role]:
-                raise ConfigError(f"{where}.{role} = {name!r}: is a {arm['type']}; must be {' or '.join(ROLES[role])}")
-            can = arm.get("capabilities", CAPABILITIES[arm["type"]])
+            arm_index, arm = by_name[name]
+            if arm["type"] not in arms.ROLES[role]:
+                known = " or ".join(arms.ROLES[role])
+                raise ConfigError(f"{where}.{role} = {name!r}: is a {arm['type']}; must be {known}")
+            can = arms.capabilities(arm) + (["measured_cf"] if "topic" in arm.get("force", {}) else [])
             for any_of, purpose in needs:
                 if not set(any_of) & set(can):
                     raise ConfigError(

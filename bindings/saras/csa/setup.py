@@ -1,0 +1,169 @@
+"""One teleoperation of a system file, as its controllers are built from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from saras import ConfigError, csa, sim
+from saras.csa import arms
+from saras.csa.surface import MeshSurface, PlaneSurface, Surface
+
+Array = NDArray[np.float64]
+Json = dict[str, Any]
+
+UP: Array = np.array([0.0, 0.0, 1.0])
+TELEOP_FIELDS = (
+    "scale",
+    "desired_force_N",
+    "force_cap_N",
+    "force_limit_N",
+    "debounce_s",
+    "stiffness_N_m",
+    "mismatch_tolerance_m",
+)
+SLAVE_FIELDS = (
+    "admittance_m_Ns",
+    "scheduled",
+    "stiffness_max_N_m",
+    "stability_margin",
+    "speed_limit_m_s",
+    "approach_speed_m_s",
+    "force_cap_N",
+)
+PHANTOM_HEIGHT_M = 0.008
+
+
+@dataclass(frozen=True)
+class Setup:
+    """Arms, gains, model and fixtures of one teleoperation. Everything in the slave's base axes."""
+
+    path: Path
+    name: str
+    teleop: Json
+    """as it stands in the file"""
+    master: Json
+    slave: Json
+    period_s: float
+    timeout_s: float
+    latency_s: float
+    start_timeout_s: float
+    master_model: arms.MasterModel | None
+    slave_model: arms.ArmModel
+
+    @property
+    def slave_R_master(self) -> Array:
+        """(3, 3) turns the master's axes into the slave's."""
+        return rotation(self.teleop.get("master_rpy_rad", [0.0, 0.0, 0.0]))
+
+    def teleop_config(self, **changes: Any) -> csa.CsaTeleopConfig:
+        """Raises ConfigError."""
+        given = {name: self.teleop[name] for name in TELEOP_FIELDS if name in self.teleop}
+        return csa.CsaTeleopConfig(**{**given, **changes})
+
+    def slave_config(self, period_s: float | None = None, **changes: Any) -> csa.SlaveMlcConfig:
+        """With the stability bound of K_g at this period, by default the file's. Raises ConfigError."""
+        given: Json = {name: self.teleop[name] for name in SLAVE_FIELDS if name in self.teleop}
+        given.setdefault("admittance_m_Ns", 0.05)
+        return csa.SlaveMlcConfig(
+            motion=self.slave_model.motion(),
+            period_s=self.period_s if period_s is None else period_s,
+            arm_lag_s=2.0 / self.slave.get("frequency_rad_s", 150.0),
+            sensor_lag_s=self.latency_s,
+            **{**given, **changes},
+        )
+
+    def compliance_config(self, **changes: float) -> csa.ComplianceConfig:
+        """A wall along z of the model's surface. changes: stiffness_N_m, damping_N_s_m. Raises ConfigError."""
+        stiffness = changes.get("stiffness_N_m", self.teleop_config().stiffness_N_m)
+        damping = changes.get("damping_N_s_m", self.teleop.get("damping_N_s_m", 1.0))
+        wall = csa.ComplianceGains(stiffness_N_m=[0.0, 0.0, stiffness], damping_N_s_m=[0.0, 0.0, damping])
+        return csa.ComplianceConfig(negative=wall)
+
+    def palpation(self) -> csa.Palpation:
+        """What is superimposed at the start."""
+        given = self.teleop.get("palpation", {"kind": "none"})
+        return csa.Palpation(
+            kind=getattr(csa.PalpationKind, given["kind"].upper()),
+            amplitude=given.get("amplitude", 0.0),
+            frequency_hz=given.get("frequency_hz", 1.0),
+        )
+
+    def start(self) -> Array:
+        """(3,) where the tip of a simulated slave starts [m]."""
+        return np.array(self.slave_model.forward(self.slave_model.home)[:3, 3])
+
+    def fixtures(self, region: ArrayLike | None = None) -> list[csa.Fixture]:
+        """Those of the file and of the arm, and a picked region (n, 3) [m]. Raises ConfigError."""
+        made = list(self.slave_model.fixtures)
+        for given in self.teleop.get("fixtures", []):
+            if given["type"] == "region":
+                x, y = given["half_width_m"] * np.eye(3)[:2]
+                corners = [self.start() + i * x + j * y for i in (-1, 1) for j in (-1, 1)]
+                made.append(csa.Fixture.hull("region", csa.region_of_interest(corners, UP)))
+            else:
+                n = np.array(given["normal"]) / np.linalg.norm(given["normal"])
+                margin, soft = given.get("margin_m", 0.0), given.get("soft", False)
+                made.append(csa.Fixture.plane(given["name"], np.array(given["point_m"]), n, margin, soft))
+        if region is not None:
+            points = np.asarray(region, dtype=float)
+            normal = self.surface().touch(points.mean(axis=0)).normal
+            faces = csa.region_of_interest(points, normal if np.linalg.norm(normal) > 0.5 else None)
+            made.append(csa.Fixture.hull("region_of_interest", faces))
+        return made
+
+    def phantom(self) -> Json:
+        """As it stands in the file; empty when there is none."""
+        found: Json = self.teleop.get("phantom", {})
+        return found
+
+    def tissue_config(self) -> sim.TissueConfig:
+        """The simulated phantom, its surface under the slave's start. Raises ConfigError."""
+        phantom = self.phantom()
+        names = ("stiffness_N_m", "inclusion_stiffness_N_m", "force_noise_N", "seed")
+        tissue = {name: phantom[name] for name in names if name in phantom}
+        if "inclusion_m" in phantom:
+            tissue["inclusion_x_m"], tissue["inclusion_y_m"] = phantom["inclusion_m"]
+        surface = np.eye(4)
+        surface[:3, 3] = self.start() - phantom.get("height_m", PHANTOM_HEIGHT_M) * UP
+        return sim.TissueConfig(base_T_surface=surface, **tissue)
+
+    def surface(self) -> Surface:
+        """What the proxy meets. Raises ConfigError."""
+        model = self.teleop.get("model")
+        if model is None:
+            phantom = self.phantom()
+            height = phantom.get("height_m", PHANTOM_HEIGHT_M) - phantom.get("model_error_m", 0.0)
+            return PlaneSurface(self.start() - height * UP, UP)
+        if model["type"] == "plane":
+            return PlaneSurface(model["point_m"], model["normal"])
+        pose = np.eye(4)
+        pose[:3, :3] = rotation(model.get("rpy_rad", [0.0, 0.0, 0.0]))
+        pose[:3, 3] = model.get("xyz_m", [0.0, 0.0, 0.0])
+        return MeshSurface.load(self.path.parent / model["file"], pose)
+
+    def check(self) -> None:
+        """Builds everything once. Raises ConfigError for what only the controllers know."""
+        csa.CsaTeleop(self.teleop_config())
+        csa.SlaveMlc(self.slave_config())
+        csa.ComplianceWrench(self.compliance_config())
+        csa.FixtureSet(self.fixtures())
+        self.palpation(), self.surface()
+        if "phantom" in self.teleop:
+            self.tissue_config()
+        elif "model" not in self.teleop:
+            raise ConfigError("model: is needed where there is no phantom")
+
+
+def rotation(rpy: ArrayLike) -> Array:
+    """(3, 3) Rz(yaw) Ry(pitch) Rx(roll)."""
+    roll, pitch, yaw = np.asarray(rpy, dtype=float)
+    cr, sr, cp, sp, cy, sy = np.cos(roll), np.sin(roll), np.cos(pitch), np.sin(pitch), np.cos(yaw), np.sin(yaw)
+    z = np.array([[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]])
+    y = np.array([[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]])
+    x = np.array([[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]])
+    return np.asarray(z @ y @ x)
