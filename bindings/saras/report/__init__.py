@@ -10,6 +10,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from saras.recording import Session
+from saras.report import awareness
 from saras.report.page import page
 from saras.report.sections import sections
 from saras.report.verdicts import Findings, Verdict, examine
@@ -20,8 +21,12 @@ __all__ = ["Findings", "Verdict", "examine", "write_report"]
 def write_report(bag: str | Path, out: str | Path) -> Findings:
     """Reads a bag and writes its report. Raises saras.Error when the bag cannot be read."""
     with Session.open(bag) as session:
-        found = examine(session)
-        html = page(session, found, sections(session, found))
+        if awareness.is_awareness(session):
+            found = awareness.examine(session)
+            html = page(session, found, awareness.sections(session, found))
+        else:
+            found = examine(session)
+            html = page(session, found, sections(session, found))
     path = Path(out)
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(html, encoding="utf-8")
