@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import datetime
+import importlib
 import json
 import os
 import shutil
@@ -27,6 +28,7 @@ LAUNCH_FILE = ROOT / "launch" / "saras_mrs.launch"
 START_TIMEOUT_S = 90.0
 LARGEST_HELD_PART = 0.1  #: of the session on HOLD, above which the demo was no success
 REQUIRED_ARGS = {"record", "operator", "bag"}
+OTHERS = {"csa": "saras_ros1.csa_demo"}  #: demos with a command line of their own
 
 
 class DemoError(RuntimeError):
@@ -38,7 +40,9 @@ def parse(argv: list[str] | None = None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="script/demo", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("name", nargs="?", default="platform", choices=["platform"], help="which demo")
+    parser.add_argument(
+        "name", nargs="?", default="platform", choices=["platform", *OTHERS], help="which demo; each has its own --help"
+    )
     parser.add_argument("--headless", action="store_true", help="no rviz, also when there is a display")
     parser.add_argument(
         "--duration", type=float, metavar="S", help="seconds of engaged operation; default: until Ctrl-C"
@@ -276,6 +280,9 @@ def conclude(out: Path, engaged_at: float | None) -> list[str]:
 
 def main(argv: list[str] | None = None) -> int:
     """Exit code: 0 all well, 1 something was not, 2 wrong arguments."""
+    given = sys.argv[1:] if argv is None else argv
+    if given and given[0] in OTHERS:
+        return int(importlib.import_module(OTHERS[given[0]]).main(given[1:]))
     arguments = parse(argv)
     out: Path = arguments.out
     if shutil.which("roslaunch") is None:

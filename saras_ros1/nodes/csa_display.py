@@ -1,4 +1,4 @@
-"""csa_display: markers for rviz on /csa/markers. Displays only; nothing depends on it."""
+"""csa_display: markers for rviz on /csa/markers, and the frame csa_view where the tip starts. Displays only."""
 
 from __future__ import annotations
 
@@ -6,11 +6,15 @@ import os
 from collections import deque
 
 import numpy as np
+import rospy
+import tf2_ros
 from geometry_msgs.msg import Point, PointStamped, PolygonStamped, PoseStamped, WrenchStamped
 from sensor_msgs.msg import JointState
+from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import MarkerArray
 
 from saras.csa.setup import PHANTOM_HEIGHT_M, UP
+from saras_ros1 import convert
 from saras_ros1 import csa_markers as markers
 from saras_ros1.csa_node import CsaNode
 from saras_ros1.latest import Latest
@@ -21,6 +25,9 @@ from saras_ros1.node import run
 DISPLAY_HZ = 15.0
 JOINTS_HZ = 10.0
 TRAIL_POINTS = 1500
+LIFT_M = 0.0003
+LABEL_M = 0.022
+STEEL = ColorRGBA(0.75, 0.78, 0.82, 0.8)
 FOREVER_S = float("inf")  # latched
 
 
@@ -47,7 +54,11 @@ class CsaDisplay(CsaNode):
         self.joints_out = self.output(f"/visualization/{self.slave}/joint_states", JointState)
         self.markers = self.output("/csa/markers", MarkerArray)
         self.trail: deque = deque(maxlen=TRAIL_POINTS)
-        self.start = self.setup.start()
+        self.start, self.surface = self.setup.start(), self.setup.surface()
+        self.view = tf2_ros.StaticTransformBroadcaster()
+        view_T_base = np.eye(4)
+        view_T_base[:3, 3] = -self.start
+        self.view.sendTransform(convert.transform_msg(view_T_base, "csa_view", self.frame, rospy.Time.now()))
         self.every(1.0 / DISPLAY_HZ, self._publish)
         self.every(1.0 / JOINTS_HZ, self._publish_joints)
 
@@ -61,21 +72,28 @@ class CsaDisplay(CsaNode):
         tip, proxy, closest = (_at(latest.value()) for latest in (self.tip, self.proxy, self.closest))
         touching = told is not None and told.state in (CsaTeleopState.SLAVE_CONTACT, CsaTeleopState.FULL_CONTACT)
         if tip is not None and touching:
-            self.trail.append(tip)
+            self.trail.append(self._on_model(tip))
         next_location = _at(self.next_location.value())
+        picked = [self._on_model(point) for point in _points(self.picked.value(FOREVER_S))]
         shown = [
             *self._phantom(),
-            markers.shaft("slave", frame, tip, WHITE, 0.0012),
-            ball("tip", frame, tip, WHITE, 0.0022),
-            ball("proxy", frame, proxy, markers.GREEN, 0.003),
-            ball("closest point", frame, closest, RED, 0.0024),
+            markers.shaft("slave", frame, tip, STEEL, 0.003),
+            ball("tip", frame, tip, WHITE, 0.0034),
+            ball("proxy", frame, proxy, markers.GREEN, 0.004),
+            ball("closest point", frame, closest, RED, 0.003),
             markers.force(frame, closest, self.wrench.value()),
-            *markers.region(frame, _points(self.picked.value(FOREVER_S)), bool(_points(self.region.value(FOREVER_S)))),
+            *markers.region(frame, picked, bool(_points(self.region.value(FOREVER_S)))),
             markers.trail(frame, list(self.trail)),
             ball("next location", frame, next_location, markers.NEXT, 0.0025),
-            markers.label(frame, self.start + 0.02 * UP, told, did),
+            markers.label(frame, self.start + LABEL_M * UP, told, did),
         ]
         self.markers.publish(MarkerArray(shown))
+
+    def _on_model(self, point) -> Point:
+        """Lifted to the model's surface: what is pressed in would be drawn under it."""
+        at = np.array([point.x, point.y, point.z])
+        touch = self.surface.touch(at)
+        return Point(*(touch.closest + LIFT_M * touch.normal if touch.depth_m > 0.0 else at).tolist())
 
     def _phantom(self) -> list:
         phantom = self.setup.phantom()
@@ -83,7 +101,7 @@ class CsaDisplay(CsaNode):
             return []
         top = self.start - phantom.get("height_m", PHANTOM_HEIGHT_M) * UP
         tissue = self.setup.tissue_config()
-        at = top + np.array([tissue.inclusion_x_m, tissue.inclusion_y_m, 0.0002])
+        at = top + np.array([tissue.inclusion_x_m, tissue.inclusion_y_m, -0.002])
         shown = [
             markers.block("phantom", self.frame, top, markers.THICKNESS_M, markers.SILICONE),
             markers.lump(self.frame, at, tissue.inclusion_radius_m),

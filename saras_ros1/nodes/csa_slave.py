@@ -117,10 +117,10 @@ class CsaSlave(CsaNode):
         wrench = self._wrench(tip)
         told = self.told.message
         heard = self.told.fresh
-        if told is None or (heard and not told.enabled):
+        if self.q is None or (heard and not told.enabled):
             self.q, self.enabled = measured.q.copy(), False
             self.law.reset()
-        elif heard and not self.enabled:
+        if heard and told.enabled and not self.enabled:
             self.q, self.enabled = measured.q.copy(), True
         self._publish_measured(tick, measured, tip, wrench)
         if self.enabled:

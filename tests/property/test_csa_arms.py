@@ -134,10 +134,13 @@ def test_axes_of_the_master_are_turned_as_urdf_turns_them() -> None:
 def test_the_bound_of_the_gain_is_that_of_the_real_period() -> None:
     document = json.loads((CONFIG / "demo.json").read_text())
     teleop = document["teleops"][0]
-    teleop.update(scheduled=False, stiffness_max_N_m=1500.0)
+    teleop.update(scheduled=False, stiffness_max_N_m=1500.0, damping_max_N_s_m=0.0)
     lag = 0.01 + 2.0 / 150.0 + 0.02
     teleop["admittance_m_Ns"] = 0.99 * 0.5 / (1500.0 * lag)
     setup = system.System(CONFIG / "demo.json", document).setup()
     assert setup.slave_config().admittance_m_Ns == teleop["admittance_m_Ns"]
     with pytest.raises(saras.ConfigError, match="admittance_m_Ns"):
         setup.slave_config(period_s=0.012)
+    teleop["damping_max_N_s_m"] = 0.86 / teleop["admittance_m_Ns"]
+    with pytest.raises(saras.ConfigError, match="damping_max_N_s_m"):
+        setup.slave_config()

@@ -96,3 +96,14 @@ def test_an_out_directory_with_a_recording_is_refused(tmp_path, monkeypatch):
     (tmp_path / "old.bag").write_bytes(b"")
     monkeypatch.setattr(demo.shutil, "which", lambda name: name)
     assert demo.main(["--out", str(tmp_path)]) == 2
+
+
+def test_other_demos_have_command_lines_of_their_own(tmp_path, capsys):
+    csa_demo = pytest.importorskip("saras_ros1.csa_demo")
+    given = csa_demo.parse(["--headless", "--duration", "50", "--out", str(tmp_path)])
+    assert (given.headless, given.duration, given.out) == (True, 50.0, tmp_path)
+    for wrong in (["--duration", "5"], ["--operator", "weak"]):
+        with pytest.raises(SystemExit) as refusal:
+            demo.main(["csa", *wrong])
+        assert refusal.value.code == 2
+    assert "must be in [40, 3600]" in capsys.readouterr().err

@@ -133,6 +133,7 @@ class Csa(unittest.TestCase):
             (teleop(["scale", "scale"], [1.0]), ("as many",)),
             (slave(["admittance_m_Ns"], [math.inf]), ("must be finite",)),
             (slave(["admittance_m_Ns"], [-1.0]), ("admittance_m_Ns = -1",)),
+            (slave(["admittance_m_Ns"], [0.05]), ("admittance_m_Ns = 0.05", "damping_max_N_s_m = 42")),
         ):
             self.assertFalse(refused.success)
             for word in words:
@@ -146,7 +147,7 @@ class Csa(unittest.TestCase):
         self.assertTrue(teleop(["desired_force_N"], [2.0]).success)
         self.assertTrue(set_primitive("motion", 0.001, 1.0).success)
         wait_until(lambda: math.isnan(self.did.message.desired_force_N), "position instead of force along the normal")
-        self.assertTrue(set_primitive("force", 0.5, 0.5).success)
+        self.assertTrue(set_primitive("force", 0.5, 0.3).success)
         self.force_settles(2.0)
 
     def test_a5_a_picked_region_holds_the_tip_inside(self) -> None:
@@ -255,7 +256,7 @@ class Csa(unittest.TestCase):
 
         refused("csa_slave", other_force, "nobody publishes /nowhere/wrench", "a source of force")
         refused("csa_master", other_master, "/MTMR/measured_js", "nobody listens to /MTMR/servo_jf", "its torque")
-        refused("csa_slave", fixed_gain, "$.teleops[0]", "admittance_m_Ns = 0.05")
+        refused("csa_slave", fixed_gain, "$.teleops[0]", "admittance_m_Ns = 0.02")
 
 
 if __name__ == "__main__":

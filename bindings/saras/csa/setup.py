@@ -36,6 +36,7 @@ SLAVE_FIELDS = (
     "force_cap_N",
 )
 PHANTOM_HEIGHT_M = 0.008
+DAMPING_MARGIN = 0.85
 
 
 @dataclass(frozen=True)
@@ -69,6 +70,7 @@ class Setup:
         """With the stability bound of K_g at this period, by default the file's. Raises ConfigError."""
         given: Json = {name: self.teleop[name] for name in SLAVE_FIELDS if name in self.teleop}
         given.setdefault("admittance_m_Ns", 0.05)
+        self._check_damping({**given, **changes}["admittance_m_Ns"])
         return csa.SlaveMlcConfig(
             motion=self.slave_model.motion(),
             period_s=self.period_s if period_s is None else period_s,
@@ -76,6 +78,15 @@ class Setup:
             sensor_lag_s=self.latency_s,
             **{**given, **changes},
         )
+
+    def _check_damping(self, admittance_m_Ns: float) -> None:
+        """Small gain: tissue with a damper b turns speed into force, and K_g force into speed, whatever the delay."""
+        damping = self.teleop.get("damping_max_N_s_m", 0.0)
+        if admittance_m_Ns * damping > DAMPING_MARGIN:
+            raise ConfigError(
+                f"admittance_m_Ns = {admittance_m_Ns:g}: times damping_max_N_s_m = {damping:g} must be at most "
+                f"{DAMPING_MARGIN}: admittance_m_Ns at most {DAMPING_MARGIN / damping:.3g}"
+            )
 
     def compliance_config(self, **changes: float) -> csa.ComplianceConfig:
         """A wall along z of the model's surface. changes: stiffness_N_m, damping_N_s_m. Raises ConfigError."""

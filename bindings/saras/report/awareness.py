@@ -132,13 +132,25 @@ def _force(told: Topic | None, did: Topic | None) -> Verdict:
     at = settled(told, did.t) & np.isfinite(did["desired_force_N"]) & ~did["hold"].astype(bool)
     if at.sum() < 100:
         return Verdict(title, "unknown", "force was controlled for too short a time", "unknown")
-    desired, is_ = did["desired_force_N"][at], did["normal_force_N"][at]
-    rms, mean = float(np.sqrt(np.mean((is_ - desired) ** 2))), float(np.mean(desired))
+    error = np.where(at, did["normal_force_N"] - did["desired_force_N"], np.nan)
+    slow = _without_palpation(told, did.t, error)
+    mean = float(np.mean(did["desired_force_N"][at]))
+    rms, with_palpation = (float(np.sqrt(np.nanmean(e**2))) for e in (slow, error))
     share = rms / mean
     grade = "good" if share < FORCE_SHARE else "warning" if share < 2.0 * FORCE_SHARE else "bad"
-    bias = float(np.mean(is_ - desired))
-    detail = f"RMS, {100 * share:.1f} % of {mean:.2f} N, palpation included; mean {bias:+.3f} N; {at.sum()} ticks"
+    detail = f"RMS of the mean over a palpation, {100 * share:.1f} % of {mean:.2f} N; palpation included "
+    detail += f"{with_palpation:.3f} N, {100 * with_palpation / mean:.1f} %; {at.sum()} ticks"
     return Verdict(title, f"{rms:.3f} N", detail, grade)
+
+
+def _without_palpation(told: Topic, t: Floats, error: Floats) -> Floats:
+    """The error's mean over one period of the last palpation; NaN where it is not known all that time."""
+    kinds, frequency = told["primitive.kind"].astype(str), told["primitive.frequency_hz"].astype(float)
+    period_s = 1.0 / frequency[-1] if kinds[-1] == "force" and frequency[-1] > 0.0 else 0.0
+    count = round(period_s / max(float(np.median(np.diff(t))), 1e-6))
+    if count < 2 or count >= len(error):
+        return error
+    return np.asarray(np.lib.stride_tricks.sliding_window_view(error, count).mean(axis=1))
 
 
 def _region(session: Session, did: Topic | None) -> Verdict:
@@ -160,8 +172,9 @@ def _hand(session: Session) -> Verdict:
     if wrench is None:
         return Verdict("Force on the hand", "unknown", "/csa/master/servo_cf was not recorded", "unknown")
     force = np.linalg.norm(wrench.value[:, :3], axis=1)
-    step = np.linalg.norm(np.diff(wrench.value[:, :3], axis=0), axis=1)
-    detail = f"at most; largest step between two ticks {step.max() if len(step) else 0.0:.2f} N"
+    step, dt = np.linalg.norm(np.diff(wrench.value[:, :3], axis=0), axis=1), np.diff(wrench.t)
+    rate = float((step[dt > 0.0] / dt[dt > 0.0]).max()) if (dt > 0.0).any() else 0.0
+    detail = f"at most; it changes by up to {rate:.0f} N/s"
     return Verdict("Force on the hand", f"{force.max():.2f} N", detail, "good" if force.max() > 0.0 else "warning")
 
 
@@ -187,7 +200,7 @@ def _holds(told: Topic | None, did: Topic | None) -> Verdict:
 
 
 def _chart(session: Session, y_label: str, **options: Any) -> Chart:
-    made = Chart(y_label, x_range=(0.0, session.duration_s), width=1150, **options)
+    made = Chart(y_label, x_range=(0.0, session.duration_s), **{"width": 1150, **options})
     made.bands = [(a, b, "hold") for a, b, state, _ in bands(session.topic(STATE_TOPIC)) if state == HOLD]
     return made
 
@@ -240,15 +253,16 @@ def across(session: Session) -> str:
     if picked is not None:
         ring = 1e3 * (_ring(picked[1]) - origin[:2])
         plane.line(ring[:, 0], ring[:, 1], "region of interest", "command", True, 2.0)
-    side = _chart(session, "sideways, x [mm]", height=170)
+    side = _chart(session, "sideways, x [mm]", width=560, height=190)
     for series, label, color in ((proxy, "proxy", "master"), (tip, "tip", "measured")):
         if series is not None:
             side.line(series.t, 1e3 * (series.position[:, 0] - origin[0]), label, color)
-    out = _chart(session, "out of the region [mm]", height=130).level(0.0, "border")
+    out = _chart(session, "out of the region [mm]", width=560, height=170).level(0.0, "border")
     found = outside(session)
     if found is not None:
         out.line(found[0], 1e3 * found[1], "measured tip", "measured")
-    return plane.render() + side.render() + out.render()
+    columns = (plane.render(), side.render() + out.render())
+    return f'<div class="sides">{"".join(f"<div class=side>{column}</div>" for column in columns)}</div>'
 
 
 def _ring(points: Floats) -> Floats:
