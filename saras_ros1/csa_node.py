@@ -28,7 +28,7 @@ class CsaNode(Node):
         teleop = self.params.text("teleop", empty=True)
         self.setup: Setup = load(self.params.text("system")).setup(teleop or None)
         self.master, self.slave = self.setup.master["name"], self.setup.slave["name"]
-        self.frame = self.slave
+        self.frame = self.setup.frame
         self.pace = Pace(self.setup.period_s)
 
     def require(self, *needs: Need) -> None:
@@ -119,11 +119,19 @@ class Joints(NamedTuple):
     v: np.ndarray
 
 
-def joint_reader(count: int) -> Any:
-    """Converts the JointState of an arm with so many joints; a gripper behind them is left out."""
+def joint_reader(count: int, names: list[str] | None = None) -> Any:
+    """Converts the JointState of an arm with so many joints; a gripper behind them is left out.
+
+    names: its joints are found by these instead of by their place.
+    """
 
     def read(message: JointState) -> Joints:
-        q, v = np.array(message.position[:count], dtype=float), np.array(message.velocity[:count], dtype=float)
+        position, velocity = message.position, message.velocity
+        if names is not None:
+            at = [message.name.index(name) for name in names]  # ValueError when one is not there
+            position = [position[i] for i in at]
+            velocity = [velocity[i] for i in at] if len(velocity) == len(message.name) else []
+        q, v = np.array(position[:count], dtype=float), np.array(velocity[:count], dtype=float)
         if len(q) != count or not np.isfinite(q).all():
             raise ValueError(f"joint positions {list(message.position)}: must be {count} finite numbers")
         if len(v) != count or not np.isfinite(v).all():

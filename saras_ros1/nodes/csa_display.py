@@ -13,6 +13,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import MarkerArray
 
+from saras.csa import arms
 from saras.csa.setup import PHANTOM_HEIGHT_M, UP
 from saras_ros1 import convert
 from saras_ros1 import csa_markers as markers
@@ -50,7 +51,7 @@ class CsaDisplay(CsaNode):
             Latest("/csa/modeler/roi", PolygonStamped),
         )
         self.next_location = Latest("/csa/modeler/next_location", PointStamped)
-        self.joints = Latest(f"/{self.slave}/measured_js", JointState)
+        self.joints = Latest(arms.topic(self.setup.slave, "measured_js"), JointState)
         self.joints_out = self.output(f"/visualization/{self.slave}/joint_states", JointState)
         self.markers = self.output("/csa/markers", MarkerArray)
         self.trail: deque = deque(maxlen=TRAIL_POINTS)

@@ -7,6 +7,7 @@ known, the stiffness under the tip on /csa/slave/stiffness.
 from __future__ import annotations
 
 import numpy as np
+import rospy
 from geometry_msgs.msg import PoseStamped, TwistStamped, WrenchStamped
 from std_msgs.msg import Float64
 
@@ -23,7 +24,8 @@ class CsaPhantom(CsaNode):
         super().__init__("csa_phantom")
         setup, force = self.setup, self.setup.slave.get("force", {})
         if "phantom" not in setup.teleop:
-            raise ConfigError(f"{setup.path}: {setup.name}: phantom: is not there: csa_phantom has nothing to do")
+            rospy.loginfo(f"{self.name}: {setup.name} has no phantom: nothing to do")
+            return
         if force.get("axes", "base") != "base" or force.get("exerted_on", "tissue") != "tissue":
             raise ConfigError(f"{setup.path}: {self.slave}: force: the plate's is exerted on the tissue, base axes")
         self.tissue = sim.Tissue(setup.tissue_config())
@@ -50,6 +52,8 @@ class CsaPhantom(CsaNode):
 
     def report(self) -> dict:
         """What the sensor reads."""
+        if not self.loops:
+            return {}
         return {"force_N": round(self.force_N, 3)}
 
 

@@ -13,7 +13,6 @@ from crtk_msgs.msg import OperatingState, StringStamped
 from geometry_msgs.msg import PointStamped, PoseStamped, TwistStamped, WrenchStamped
 from sensor_msgs.msg import JointState
 
-from saras import ConfigError
 from saras.crtk import StateMachine
 from saras.csa.arms import SIMULATED
 from saras.csa.simulated_arms import SimulatedMaster, SimulatedSlave
@@ -59,7 +58,7 @@ class CsaSim(CsaNode):
         if self.setup.slave["type"] in SIMULATED:
             self._make_slave(self.slave)
         if self.hand is None and self.arm is None:
-            raise ConfigError(f"{self.setup.path}: {self.setup.name}: no simulated arm: csa_sim has nothing to do")
+            rospy.loginfo(f"{self.name}: {self.setup.name} has no simulated arm: nothing to do")
         self._last_s = time.monotonic()
         self.ticks = self._ticks_at_report = 0
         self.every(self.setup.period_s, self.tick)

@@ -18,6 +18,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
 from saras import ConfigError, csa
+from saras.csa import arms
 from saras_ros1 import convert
 from saras_ros1.csa_gains import Gains
 from saras_ros1.csa_node import CsaNode, Need, joint_reader, joint_state, vector
@@ -36,18 +37,22 @@ class CsaSlave(CsaNode):
 
     def __init__(self) -> None:
         super().__init__("csa_slave")
-        setup, name = self.setup, self.slave
+        setup, slave = self.setup, self.setup.slave
         self.arm = setup.slave_model
-        force = setup.slave.get("force", {})
-        topic = force.get("topic", f"/{name}/measured_cf")
+        force = slave.get("force", {})
+        topic = force.get("topic", arms.topic(slave, "measured_cf"))
+        joints, self.in_joints = arms.topic(slave, "measured_js"), "servo_jp" in arms.capabilities(slave)
+        command = arms.topic(slave, "servo_jp" if self.in_joints else "servo_cp")
+        command_class = JointState if self.in_joints else PoseStamped
         self.in_tip_axes, self.sign = force.get("axes") == "tip", -1.0 if force.get("exerted_on") == "tool" else 1.0
         self.require(
-            Need(f"/{name}/measured_js", JointState, "its joints"),
-            Need(f"/{name}/servo_jp", JointState, "its set-point", listens=True),
+            Need(joints, JointState, "its joints"),
+            Need(command, command_class, "its set-point", listens=True),
             Need(topic, WrenchStamped, "a source of force"),
         )
-        read = joint_reader(len(self.arm.joint_names))
-        self.joints = self.input(f"/{name}/measured_js", JointState, read, timeout_s=setup.timeout_s)
+        named = [f"mesa_{slave['side']}/{name}" for name in self.arm.joint_names] if "side" in slave else None
+        read = joint_reader(len(self.arm.joint_names), named)
+        self.joints = self.input(joints, JointState, read, timeout_s=setup.timeout_s)
         self.force = self.input(topic, WrenchStamped, convert.wrench, timeout_s=setup.timeout_s)
         self.told = self.input("/csa/teleop/state", CsaTeleopState, read_told, timeout_s=setup.timeout_s)
         self.stiffness = self.input("/csa/slave/stiffness", Float64, read_stiffness, timeout_s=STIFFNESS_TIMEOUT_S)
@@ -55,7 +60,7 @@ class CsaSlave(CsaNode):
         self.law = csa.SlaveMlc(setup.slave_config(self.period_s))
         self.speed = np.asarray(self.arm.speed)
         self.fixtures = csa.FixtureSet(setup.fixtures())
-        self.command = self.output(f"/{name}/servo_jp", JointState)
+        self.command = self.output(command, command_class)
         self.outputs = {
             topic: self.output(f"/csa/slave/{topic}", kind)
             for topic, kind in (
@@ -158,17 +163,16 @@ class CsaSlave(CsaNode):
             stale=stale,
         )
         self.q, self.reason = np.array(out.motion.q), out.motion.reason.name
-        self.command.publish(joint_state(self.arm.joint_names, tick.stamp, position=self.q))
+        if self.in_joints:
+            self.command.publish(joint_state(self.arm.joint_names, tick.stamp, position=self.q))
+        else:
+            self.command.publish(convert.pose_msg(self.arm.forward(self.q), self.frame, tick.stamp_ns))
         self._publish_admittance(tick, out, found)
 
     def _wrench(self, tip: np.ndarray) -> np.ndarray | None:
         """(6,) exerted on the tissue, base axes; None: not known."""
         wrench = self.force.fresh_value
-        if wrench is None:
-            return None
-        if self.in_tip_axes:
-            wrench = np.concatenate([tip[:3, :3] @ wrench[:3], tip[:3, :3] @ wrench[3:]])
-        return self.sign * wrench
+        return None if wrench is None else self.sign * (in_base(wrench, tip) if self.in_tip_axes else wrench)
 
     def _publish_measured(self, tick: Tick, measured, tip: np.ndarray, wrench: np.ndarray | None) -> None:
         out, frame, stamp_ns = self.outputs, self.frame, tick.stamp_ns
@@ -200,6 +204,12 @@ class CsaSlave(CsaNode):
     def report(self) -> dict:
         """Hold or not and why; the period that the bound of K_g was checked with."""
         return {"reason": self.reason, "region": self.region, "bound_period_ms": round(1e3 * self.period_s, 2)}
+
+
+def in_base(wrench: np.ndarray, base_T_tip: np.ndarray) -> np.ndarray:
+    """(6,) in the tip's axes -> base axes."""
+    rotation = base_T_tip[:3, :3]
+    return np.concatenate([rotation @ wrench[:3], rotation @ wrench[3:]])
 
 
 def palpation(kind: str, amplitude: float, frequency_hz: float) -> csa.Palpation:

@@ -7,6 +7,7 @@ Steps on /csa/master/measured_cp; gives /csa/teleop/state (what slave and proxy 
 from __future__ import annotations
 
 import math
+from typing import Callable
 
 import numpy as np
 import rospy
@@ -17,6 +18,7 @@ from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 from saras import ConfigError, csa
 from saras.csa.region import RegionPicker
 from saras_ros1 import convert
+from saras_ros1.channel import Channel
 from saras_ros1.csa_exploring import Exploring
 from saras_ros1.csa_gains import Gains
 from saras_ros1.csa_node import PRESSED, CsaNode, Pedal, vector
@@ -47,7 +49,7 @@ class CsaTeleop(CsaNode):
         self.measured = self.input("/csa/slave/measured_cp", PoseStamped, pose, timeout_s=timeout_s)
         point = convert.in_frame(self.frame, convert.point)
         self.next_location = self.input("/csa/modeler/next_location", PointStamped, point)
-        self.arms = [self.input(f"/{name}/operating_state", OperatingState) for name in (self.master, self.slave)]
+        self.arms = [self._arm_state(arm) for arm in (setup.master, setup.slave)]
         self.law = csa.CsaTeleop(setup.teleop_config())
         self.compliance = csa.ComplianceWrench(setup.compliance_config())
         self.exploring = Exploring(setup.teleop.get("exploring_speed_m_s", 0.01))
@@ -117,10 +119,20 @@ class CsaTeleop(CsaNode):
             return "WAITING: not enabled: rosservice call /csa/teleop/enable true"
         if self.present is not None and self.present.state != PRESSED:
             return f"WAITING: operator not present ({self.present.topic})"
-        for source in self.arms:
-            if source.message is not None and source.message.state != "ENABLED":
-                return f"WAITING: {source.topic} says {source.message.state}"
-        return ""
+        return next((f"WAITING: {said}" for said in (arm() for arm in self.arms) if said), "")
+
+    def _arm_state(self, arm: dict) -> Callable[[], str]:
+        """Says why the arm must not be moved; nothing when it may. An arm that never tells its state may."""
+        if arm["type"] == "saras_arm":
+            side = Channel(self, arm["side"], inherits=True)
+            return lambda: "" if side.engaged else f"{arm['side']} is not engaged ({side.input.topic})"
+        source = self.input(f"/{arm['name']}/operating_state", OperatingState)
+
+        def why_not() -> str:
+            state = "ENABLED" if source.message is None else source.message.state
+            return "" if state == "ENABLED" else f"{source.topic} says {state}"
+
+        return why_not
 
     def _missing(self, tick: Tick) -> str:
         if not self.force.fresh:

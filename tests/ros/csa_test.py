@@ -258,6 +258,37 @@ class Csa(unittest.TestCase):
         refused("csa_master", other_master, "/MTMR/measured_js", "nobody listens to /MTMR/servo_jf", "its torque")
         refused("csa_slave", fixed_gain, "$.teleops[0]", "admittance_m_Ns = 0.02")
 
+    def test_c2_a_wrench_from_outside_instead_of_the_computed_one(self) -> None:
+        document = json.loads(SYSTEM.read_text())
+        document["arms"][0] = {"name": "HAND", "type": "simulated_hand"}
+        document["teleops"][0].update(master="HAND", wrench="external", master_rpy_rad=[0.0, 0.0, math.pi / 2.0])
+        hand = rospy.Publisher("/HAND/measured_cp", PoseStamped, queue_size=1)
+        felt = Newest("/HAND/servo_cf", WrenchStamped)
+        outside = rospy.Publisher("/csa/master/external_wrench", WrenchStamped, queue_size=1)
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "system.json"
+            path.write_text(json.dumps(document))
+            rospy.set_param("/lonely", {"system": str(path), "teleop": ""})
+            process = spawn("csa_master", "__name:=lonely")
+            try:
+
+                def turned() -> bool:
+                    now = rospy.Time.now()
+                    hand.publish(convert.pose_msg(np.eye(4), "HAND", now))
+                    outside.publish(convert.wrench_msg(np.array([0.0, 1.0, 0.5, 0, 0, 0]), "PSM1", now))
+                    return felt.message and np.allclose(convert.wrench(felt.message)[:3], [1.0, 0.0, 0.5], atol=1e-9)
+
+                wait_until(turned, "the outside wrench in the hand's axes")
+
+                def gone() -> bool:
+                    hand.publish(convert.pose_msg(np.eye(4), "HAND", rospy.Time.now()))
+                    return not convert.wrench(felt.message).any()
+
+                wait_until(gone, "a wrench that is too old is none")
+            finally:
+                process.kill()
+                process.wait()
+
 
 if __name__ == "__main__":
     rostest.rosrun("saras_ros1", "csa", Csa, sys.argv)

@@ -22,10 +22,11 @@ CAPABILITIES = {
     "simulated_psm": ["measured_js", "measured_cp", "measured_cf", "servo_jp"],
     "simulated_saras": ["measured_js", "measured_cp", "measured_cf", "servo_jp"],
     "dvrk_psm": ["measured_js", "measured_cp", "measured_cf", "servo_jp"],
+    "saras_arm": ["measured_js", "measured_cf", "servo_cp"],
 }
 ROLES = {
     "master": ("simulated_hand", "simulated_mtm", "dvrk_mtm"),
-    "slave": ("simulated_psm", "simulated_saras", "dvrk_psm"),
+    "slave": ("simulated_psm", "simulated_saras", "dvrk_psm", "saras_arm"),
 }
 SIMULATED = ("simulated_hand", "simulated_mtm", "simulated_psm", "simulated_saras")
 
@@ -71,10 +72,23 @@ def capabilities(arm: Json) -> list[str]:
     return list(arm.get("capabilities", CAPABILITIES[arm["type"]]))
 
 
+def topic(arm: Json, name: str) -> str:
+    """Where a CRTK name of an arm is; the SARAS platform has names of its own."""
+    if arm["type"] != "saras_arm":
+        return f"/{arm['name']}/{name}"
+    own = {"measured_js": "joint_states", "servo_cp": "set_point"}
+    return f"/mesa_{arm['side']}/{own.get(name, name)}"
+
+
+def base_frame(arm: Json) -> str:
+    """Of a slave: where all of its teleoperation is."""
+    return f"mesa_{arm['side']}/sbs_world" if arm["type"] == "saras_arm" else str(arm["name"])
+
+
 def slave_model(arm: Json) -> ArmModel:
     """Kinematics of a slave of a system file. Raises ConfigError for an unknown instrument."""
-    if arm["type"] == "simulated_saras":
-        return _saras()
+    if arm["type"] in ("simulated_saras", "saras_arm"):
+        return _saras(np.array(arm.get("trocar_m", mesa.NOMINAL_RCM), dtype=float))
     psm = dvrk.psm(arm.get("tool", "400006"), arm.get("body", "classic"))
     return ArmModel(
         joint_names=tuple(dvrk.PSM_JOINT_NAMES),
@@ -89,9 +103,8 @@ def slave_model(arm: Json) -> ArmModel:
     )
 
 
-def _saras() -> ArmModel:
+def _saras(trocar: Array) -> ArmModel:
     arm = mesa.arm()
-    trocar = mesa.NOMINAL_RCM
 
     def within_reach(pose: Array) -> Array:
         turned = arm.pivot_pose(pose, trocar)
@@ -99,7 +112,7 @@ def _saras() -> ArmModel:
 
     return ArmModel(
         joint_names=mesa.JOINT_NAMES,
-        home=mesa.home(),
+        home=mesa.home(trocar),
         limits=np.asarray(arm.limits),
         speed=np.asarray(arm.config.speed),
         lead=np.array([0.1, 0.1, 0.1, 0.1, 0.02, 0.5]),
@@ -151,7 +164,9 @@ __all__ = [
     "SIMULATED",
     "ArmModel",
     "MasterModel",
+    "base_frame",
     "capabilities",
     "master_model",
     "slave_model",
+    "topic",
 ]

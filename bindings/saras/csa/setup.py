@@ -57,6 +57,11 @@ class Setup:
     slave_model: arms.ArmModel
 
     @property
+    def frame(self) -> str:
+        """The slave's base."""
+        return arms.base_frame(self.slave)
+
+    @property
     def slave_R_master(self) -> Array:
         """(3, 3) turns the master's axes into the slave's."""
         return rotation(self.teleop.get("master_rpy_rad", [0.0, 0.0, 0.0]))

@@ -24,7 +24,7 @@ MAX_BYTES = 1 << 20
 NEEDS = {
     "master": ((("measured_cp",), "its position"), (("servo_jf", "servo_cf"), "its torque")),
     "slave": (
-        (("servo_jp",), "joint positions"),
+        (("servo_jp", "servo_cp"), "joint positions"),
         (("measured_cf",), "a source of force"),
         (("measured_js",), "its joints"),
     ),
