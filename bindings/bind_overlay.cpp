@@ -122,6 +122,7 @@ void bind_overlay(py::module_& m) {
   bind_overlay_camera(m);
   bind_overlay_watch(m);
   bind_overlay_tools(m);
+  bind_overlay_inset(m);
 }
 
 }  // namespace saras::bindings

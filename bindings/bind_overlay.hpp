@@ -17,5 +17,6 @@ ImageView view_of(Pixels& pixels, const std::string& encoding, bool drawn_on = t
 void bind_overlay_camera(py::module_& m);
 void bind_overlay_watch(py::module_& m);
 void bind_overlay_tools(py::module_& m);
+void bind_overlay_inset(py::module_& m);
 
 }  // namespace saras::bindings

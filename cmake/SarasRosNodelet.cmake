@@ -10,6 +10,7 @@ foreach(package IN LISTS saras_nodelet_packages)
 endforeach()
 
 add_library(saras_visual_feedback SHARED
+  saras_ros1/nodelet/awareness_source.cpp
   saras_ros1/nodelet/overlay_messages.cpp
   saras_ros1/nodelet/overlay_sources.cpp
   saras_ros1/nodelet/parameters.cpp

@@ -4,6 +4,9 @@ Points are in the rectified *left* optical frame for both eyes. Images are drawn
 """
 
 from saras._core.overlay import (
+    AwarenessInset,
+    AwarenessInsetStyle,
+    AwarenessView,
     CameraConfig,
     EyeSide,
     FrozenWatch,
@@ -27,6 +30,9 @@ from saras._core.overlay import (
 )
 
 __all__ = [
+    "AwarenessInset",
+    "AwarenessInsetStyle",
+    "AwarenessView",
     "CameraConfig",
     "EyeSide",
     "FrozenWatch",

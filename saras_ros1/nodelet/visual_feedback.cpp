@@ -63,6 +63,10 @@ void VisualFeedback::read_parameters() {
   style_.ruler_ticks = own.integer("style/ruler_ticks", 0, 20);
   style_.text_height = own.number("style/text_height", 0.01, 0.2);
   style_.panel = own.flag("style/panel");
+  inset_wanted_ = own.flag("awareness_inset");
+  inset_style_.width = own.number("inset/width", 0.1, 0.5);
+  inset_style_.span_m = own.number("inset/span_m", 0.001, 1.0);
+  inset_style_.arrow_m_per_N = own.number("inset/arrow_m_per_N", 1e-4, 1.0);
   own.text("image_transport");  // read by image_transport itself
   own.finish();
   style_.validate();
@@ -81,6 +85,9 @@ void VisualFeedback::read_parameters() {
 void VisualFeedback::start() {
   read_parameters();
   sources_ = std::make_unique<OverlaySources>(getMTNodeHandle(), sources_config_);
+  if (inset_wanted_) {
+    awareness_ = std::make_unique<AwarenessSource>(getMTNodeHandle());
+  }
   ros::NodeHandle& handle = getNodeHandle();
   image_transport::ImageTransport transport(handle);
   stepped_at_ = drawn_at_ = ros::SteadyTime::now();
@@ -108,9 +115,13 @@ void VisualFeedback::on_info(std::size_t i, const sensor_msgs::CameraInfoConstPt
   }
   eye.info = *info;
   eye.painter.reset();
+  eye.inset.reset();
   try {
     const saras::CameraConfig camera = camera_config(*info, rectified_, near_m_);
     eye.painter.emplace(camera, style_);
+    if (inset_wanted_) {
+      eye.inset.emplace(camera.width_px, camera.height_px, inset_style_);
+    }
     eye.rectified_R_raw = camera.R;
     eye.why_no_painter.clear();
   } catch (const saras::ConfigError& error) {
@@ -214,6 +225,7 @@ void VisualFeedback::publish(std::size_t i, const sensor_msgs::ImageConstPtr& im
     } else {
       if (watched) {
         eye.painter->draw(*tools, view);
+        draw_inset(eye, view);
       }
       notice = tools->camera_known ? saras::OverlayNotice::kNone : saras::OverlayNotice::kNoCameraPose;
       ++eye.drawn;
@@ -227,6 +239,13 @@ void VisualFeedback::publish(std::size_t i, const sensor_msgs::ImageConstPtr& im
     eye.out.publish(copy);
   }
   eye.draw_s += seconds_since(begin);
+}
+
+void VisualFeedback::draw_inset(const Eye& eye, const saras::ImageView& image) {
+  saras::AwarenessView view;
+  if (awareness_ && eye.inset && awareness_->fill(view)) {
+    eye.inset->draw(view, image);
+  }
 }
 
 void VisualFeedback::on_timer(const ros::SteadyTimerEvent&) {

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "age_statistics.hpp"
+#include "awareness_source.hpp"
 #include "overlay_sources.hpp"
 #include "saras/overlay/image_watch.hpp"
 
@@ -24,6 +25,7 @@ class VisualFeedback : public nodelet::Nodelet {
     ros::Subscriber infos;
     image_transport::Publisher out;
     std::optional<saras::OverlayPainter> painter;  // empty: no usable camera_info
+    std::optional<saras::AwarenessInset> inset;    // empty: not wanted, or no usable camera_info
     Eigen::Matrix3d rectified_R_raw = Eigen::Matrix3d::Identity();
     sensor_msgs::CameraInfo info;
     std::string why_no_painter = "no camera_info yet";
@@ -51,11 +53,15 @@ class VisualFeedback : public nodelet::Nodelet {
   void release_pair(const std::array<sensor_msgs::ImageConstPtr, 2>& images);
   void publish(std::size_t eye, const sensor_msgs::ImageConstPtr& image, saras::OverlayNotice notice,
                const saras::ToolOverlayOutput* tools);
+  void draw_inset(const Eye& eye, const saras::ImageView& image);
   void follow_pairing(const saras::StereoPairingOutput& output);
   double since_last_step();
 
   std::array<Eye, 2> eyes_;
   std::unique_ptr<OverlaySources> sources_;
+  std::unique_ptr<AwarenessSource> awareness_;  // null: no inset is wanted
+  saras::AwarenessInsetStyle inset_style_;
+  bool inset_wanted_ = false;
   std::optional<saras::ToolOverlay> law_;
   std::optional<saras::StereoPairing> pairing_;
   saras::OverlayStyle style_;

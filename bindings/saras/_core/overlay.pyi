@@ -11,6 +11,9 @@ import saras._core.collision
 import typing
 
 __all__: list[str] = [
+    "AwarenessInset",
+    "AwarenessInsetStyle",
+    "AwarenessView",
     "CameraConfig",
     "EyeSide",
     "FrozenWatch",
@@ -746,6 +749,168 @@ class OverlayPainter:
         """
         Draws in place; False, and nothing drawn: the image is not of the camera's size.
         image: uint8 (height, width[, channels]); encoding: bgr8, rgb8, mono8, bgra8 or rgba8.
+        """
+
+class AwarenessInsetStyle:
+    """
+    How the inset of situational awareness looks.
+    """
+
+    _fields: typing.ClassVar[list] = [
+        "width",
+        "span_m",
+        "azimuth_rad",
+        "elevation_rad",
+        "arrow_m_per_N",
+        "least_force_N",
+    ]
+    def __copy__(self) -> AwarenessInsetStyle: ...
+    def __deepcopy__(self, arg0: dict) -> AwarenessInsetStyle: ...
+    def __init__(self, **kwargs) -> None:
+        """
+        How the inset of situational awareness looks.
+        """
+    def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
+    @property
+    def arrow_m_per_N(self) -> float:
+        """
+        length of the force's arrow [m/N]
+        """
+    @arrow_m_per_N.setter
+    def arrow_m_per_N(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def azimuth_rad(self) -> float:
+        """
+        from where it is seen, about the base's z [rad]
+        """
+    @azimuth_rad.setter
+    def azimuth_rad(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def elevation_rad(self) -> float:
+        """
+        above the plane [rad]
+        """
+    @elevation_rad.setter
+    def elevation_rad(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def least_force_N(self) -> float:
+        """
+        no arrow below it [N]
+        """
+    @least_force_N.setter
+    def least_force_N(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def span_m(self) -> float:
+        """
+        so wide is what it shows [m]
+        """
+    @span_m.setter
+    def span_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def width(self) -> float:
+        """
+        as a share of the image's width
+        """
+    @width.setter
+    def width(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class AwarenessView:
+    """
+    What the inset shows, in the slave's base; not finite: not known.
+    """
+
+    hold: bool
+    region_closed: bool
+    text: str
+    def __init__(self) -> None: ...
+    @property
+    def center(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) middle of what is shown [m]
+        """
+    @center.setter
+    def center(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+    @property
+    def closest(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) of the model to the proxy, red [m]
+        """
+    @closest.setter
+    def closest(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+    @property
+    def force_N(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) on the hand [N]
+        """
+    @force_N.setter
+    def force_N(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+    @property
+    def known(self) -> bool:
+        """
+        else only a grey text
+        """
+    @known.setter
+    def known(self, arg0: bool) -> None: ...
+    @property
+    def normal(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) of the model there
+        """
+    @normal.setter
+    def normal(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+    @property
+    def proxy(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) green [m]
+        """
+    @proxy.setter
+    def proxy(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+    @property
+    def region(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 3]"]:
+        """
+        (n, 3) corners [m], at most 64
+        """
+    @region.setter
+    def region(self, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"]) -> None: ...
+    @property
+    def tip(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) of the slave, white [m]
+        """
+    @tip.setter
+    def tip(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+
+class AwarenessInset:
+    """
+    Draws it bottom left, into images of one size.
+    """
+    def __init__(
+        self,
+        width_px: typing.SupportsInt | typing.SupportsIndex,
+        height_px: typing.SupportsInt | typing.SupportsIndex,
+        style: AwarenessInsetStyle = ...,
+    ) -> None:
+        """
+        Raises ConfigError.
+        """
+    def draw(self, view: AwarenessView, image: numpy.typing.NDArray[numpy.uint8], encoding: str) -> bool:
+        """
+        False: the image is of another size.
+        """
+    def place(
+        self, view: AwarenessView, point: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[2, 1]"]:
+        """
+        (2,) pixel in the box of a point (3,).
+        """
+    @property
+    def box(self) -> typing.Annotated[list[int], "FixedSize(4)"]:
+        """
+        (left, top, width, height) [px]
         """
 
 def color_of(level: saras._core.collision.ProximityState) -> tuple[int, int, int, int]:

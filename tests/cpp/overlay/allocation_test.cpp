@@ -1,6 +1,7 @@
 // Laws and painters of the room allocate nothing, whatever the input.
 #include <gtest/gtest.h>
 
+#include "saras/overlay/awareness_inset.hpp"
 #include "saras/overlay/image_watch.hpp"
 #include "saras/overlay/overlay_painter.hpp"
 #include "support/no_allocation.hpp"
@@ -74,6 +75,27 @@ TEST(OverlayAllocation, Painters) {
         EXPECT_EQ(allocations, 0u);
       }
     }
+  }
+}
+TEST(OverlayAllocation, AwarenessInset) {
+  if (!test::can_count) {
+    GTEST_SKIP() << "the sanitizer owns malloc";
+  }
+  std::vector<std::uint8_t> pixels(640 * 480 * 3);
+  const ImageView image{pixels.data(), 640, 480, 640 * 3, PixelFormat::kBgr8};
+  const AwarenessInset inset(640, 480, {});
+  AwarenessView view;
+  view.known = true;
+  view.text = ShortText("FULL CONTACT");
+  view.center = view.tip = view.proxy = view.closest = Vector3(0.1, 0.0, -0.1);
+  view.force_N = Vector3(0.0, 0.0, 2.0);
+  view.region_corners = kMaxRegionCorners;
+  for (const double value : {0.1, -0.2, test::kNan, 1e9}) {
+    view.proxy.x() = view.region[3].y() = view.normal.z() = value;
+    const test::MallocCounter counter;
+    EXPECT_TRUE(inset.draw(view, image));
+    const std::size_t allocations = counter.count();
+    EXPECT_EQ(allocations, 0u);
   }
 }
 
