@@ -29,7 +29,7 @@ from saras_ros1.nodes.csa_proxy import read_told
 GAINS = ("admittance_m_Ns", "stiffness_max_N_m", "approach_speed_m_s", "speed_limit_m_s", "force_cap_N")
 MEASURE_S = 0.5  # for so long the arm's rate is looked at
 STIFFNESS_TIMEOUT_S = 1.0
-FASTER = 0.9  # a source that is faster than this share of the period is thinned out, and the period is kept
+SLOWER = 1.1  # an arm whose period is longer than so many of the file's counts as slower than the file says
 
 
 class CsaSlave(CsaNode):
@@ -56,7 +56,8 @@ class CsaSlave(CsaNode):
         self.force = self.input(topic, WrenchStamped, convert.wrench, timeout_s=setup.timeout_s)
         self.told = self.input("/csa/teleop/state", CsaTeleopState, read_told, timeout_s=setup.timeout_s)
         self.stiffness = self.input("/csa/slave/stiffness", Float64, read_stiffness, timeout_s=STIFFNESS_TIMEOUT_S)
-        self.period_s = max(setup.period_s, self._measured_period())
+        measured_s = self._measured_period()
+        self.period_s = measured_s if measured_s > SLOWER * setup.period_s else setup.period_s
         self.law = csa.SlaveMlc(setup.slave_config(self.period_s))
         self.speed = np.asarray(self.arm.speed)
         self.fixtures = csa.FixtureSet(setup.fixtures())
@@ -89,7 +90,7 @@ class CsaSlave(CsaNode):
         heard = self.joints.received - count
         if heard == 0:
             raise StartupError(f"nothing more from {self.joints.topic}")
-        return (time.monotonic() - begin) / heard * FASTER
+        return (time.monotonic() - begin) / heard
 
     def _take_gains(self, gains: dict[str, float]) -> None:
         law = csa.SlaveMlc(self.setup.slave_config(self.period_s, **gains))

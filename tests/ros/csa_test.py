@@ -188,6 +188,21 @@ class Csa(unittest.TestCase):
         set_exploring(False)
         wait_until(lambda: np.linalg.norm(self.position(self.tip)[:2] - before) < 0.0008, "where the hand is")
 
+    def test_a7_under_the_clutch_the_hand_moves_alone(self) -> None:
+        self.reach(FULL)
+        self.surgeon.press("clutch", 1)
+        wait_until(lambda: not convert.wrench(self.hand.next())[:3].any(), "no force on the hand")
+        self.tip.clear()
+        self.surgeon.go(DOWN + np.array([0.005, 0.005, 0.003]), 1.5)
+        tips = np.array([convert.pose(m)[:2, 3] for m in self.tip.all])
+        self.assertLess(np.ptp(tips, axis=0).max(), 0.0008)
+        self.set_point.clear()
+        self.surgeon.press("clutch", 0)
+        wait_until(lambda: len(self.set_point.all) > 100, "set-points")
+        path = np.array([convert.pose(m)[:3, 3] for m in self.set_point.all])
+        self.assertLess(np.linalg.norm(np.diff(path, axis=0), axis=1).max(), 0.003)
+        self.assertEqual(self.told.message.state, FULL)
+
     # ---- what goes wrong
 
     def test_b1_a_killed_force_source_is_a_hold_and_recovers(self) -> None:
