@@ -18,6 +18,8 @@ from saras_ros1.node import Node
 from saras_ros1.quiet_faults import TankFaults
 from saras_ros1.realtime_config import Publishing
 
+LIMITS = ("speed", "approach", "lead", "workspace")
+
 
 class SideTopics:
     """Of one side, from the set-point, which somebody waits for, to what is only looked at."""
@@ -109,6 +111,18 @@ class Topics:
         self._tanks = {name: TankTopics(node, name, tanks[name], every, pipeline.session) for name in tanks}
         self._count = 0
         self._newest_seq: tuple[int, int] | None = None
+        self._output: Any = None
+
+    def limits(self) -> dict[str, str]:
+        """Which bounds held back each side's set-point in the step published last."""
+        if self._output is None:
+            return {}
+        found = {}
+        for side in SIDES:
+            out = getattr(self._output, side)
+            acting = [name for name in LIMITS if getattr(out, f"{name}_limited")]
+            found[f"{side}_limited_by"] = " ".join(acting) or "none"
+        return found
 
     def publish(self, snapshot: HostSnapshot) -> None:
         """One step. What the console said is published once, so that its age shows when it is silent."""
@@ -117,6 +131,7 @@ class Topics:
         key = None if up is None else (up.session, up.seq)
         fresh = key is not None and key != self._newest_seq
         self._newest_seq = key
+        self._output = tick.output
         for side, topics in self._sides.items():
             handle = getattr(up, side) if fresh else None
             topics.publish(getattr(tick.output, side), handle, self._count, tick.stamp_ns)

@@ -219,6 +219,7 @@ class RealtimeHost(Node):
             "reply_p99_us": round(1e-3 * now.reply.quantile_ns(0.99), 1),
             "realtime": self.host.report.text(),
             "records": self._records,
+            **self.topics.limits(),
             **({} if self.scene is None else {"distances": "; ".join(self.scene.reasons) or "all known"}),
         }
 

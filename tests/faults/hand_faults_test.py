@@ -15,7 +15,7 @@ import rostest
 from geometry_msgs.msg import PointStamped, PoseStamped, WrenchStamped
 from support.case import FaultCase
 from support.keyed_console import HANDLES, HOME_M, KeyedConsole, bad_floats
-from support.options import HOSTING, LIMIT_S
+from support.options import HOSTING, LIMIT_S, process_of
 from support.platform import SIDES
 from support.proxy import Proxy
 from support.waiting import wait_until
@@ -177,9 +177,7 @@ class HandFaults(FaultCase):
                 console.position["left"] = moved(0.0, y + np.clip(goal["y"] - y, -6e-4, 6e-4))  # 60 mm/s
 
             self.hands.motion = push
-            acting = wait_until(
-                lambda: (r := self.watch.report("/velocity_integrator_left")) and self.at_the_limit(r), "the limit"
-            )
+            acting = wait_until(self.at_the_limit, "the limit")
             wait_until(lambda: self.hands.position["left"][1] > 0.39, "the hand's end")
             forces = [np.linalg.norm(self.watch.newest["/touchball_left/wrench"][:3])]
             wait_until(lambda: self.resisting(forces), lambda: f"a resisting force; {forces[-1]:.2f} N")
@@ -201,9 +199,10 @@ class HandFaults(FaultCase):
                 "against the motion"
             )
 
-    def at_the_limit(self, report):
-        acting = report.get("limited_by", "")
-        return acting if "cone" in acting or "insertion" in acting else None
+    def at_the_limit(self):
+        report = self.watch.report(process_of("/velocity_integrator_left"))
+        acting = report.get("left_limited_by" if HOSTING == "realtime" else "limited_by", "")
+        return acting if {"cone", "insertion", "workspace"} & set(acting.split()) else None
 
     def resisting(self, forces):
         """The force in simball_base (touch_base turned by half a turn about z) points against the displacement."""
