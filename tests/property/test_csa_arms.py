@@ -16,9 +16,8 @@ from saras.kinematics import mtm
 pytest.importorskip("jsonschema")
 from saras.csa import system
 from saras.csa.region import RegionPicker
-from saras.csa.setup import rotation
 from saras.csa.simulated_arms import SimulatedMaster, SimulatedSlave
-from saras.csa.surface import MeshSurface, PlaneSurface
+from saras.csa.surface import MeshSurface, PlaneSurface, rotation
 
 CONFIG = Path(__file__).parents[2] / "config" / "csa"
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import saras
-from saras import cli
+from saras import cli, csa
 
 jsonschema = pytest.importorskip("jsonschema")
 from saras.csa import system
@@ -47,6 +47,31 @@ def test_shipped_files_are_understood(path: Path) -> None:
         assert outcome is not None
 
 
+def test_each_kind_of_fixture_is_built_from_a_file(tmp_path: Path) -> None:
+    trimesh = pytest.importorskip("trimesh")
+    trimesh.creation.icosphere(radius=0.01).export(tmp_path / "vessel.stl")
+    box = [[x, y, z] for x in (0.0, 0.1) for y in (0.0, 0.1) for z in (-0.3, 0.0)]
+    kinds = [
+        {"type": "region", "half_width_m": 0.01},
+        {"type": "plane", "name": "floor", "point_m": [0, 0, -0.2], "normal": [0, 0, 2], "margin_m": 0.001},
+        {"type": "line", "name": "needle", "point_m": [0, 0, 0], "direction": [0, 1, 1], "radius_m": 0.002},
+        {"type": "path", "name": "cut", "points_m": [[0, 0, 0], [0.01, 0, 0], [0.01, 0.01, 0]]},
+        {"type": "remote_centre", "name": "trocar", "centre_m": [0, 0, 0], "soft": True},
+        {"type": "hull", "name": "room", "points_m": box},
+        {"type": "mesh", "name": "vessel", "file": "vessel.stl", "xyz_m": [0, 0, -0.1], "margin_m": 0.002},
+    ]
+    loaded = system.load(saved(tmp_path, changed(lambda d: d["teleops"][0].update(fixtures=kinds))))
+    made = csa.FixtureSet(loaded.setup().fixtures())
+    assert made.names == ["region", "floor", "needle", "cut", "trocar", "room", "vessel"]
+    pose = np.eye(4)
+    pose[:3, 3] = [0.0, 0.0, -0.085]
+    distance = made.step(pose, 0.01, shaft=[0.0, 0.0, -1.0]).distance_m
+    assert distance[1] == pytest.approx(-0.085 + 0.2 - 0.001)
+    assert distance[2] == pytest.approx(0.002 - 0.085 / np.sqrt(2.0))
+    assert distance[6] == pytest.approx(0.015 - 0.01 - 0.002, abs=1e-4)
+    assert loaded.experiment().region_m == 0.01
+
+
 def test_a_file_is_simulated_as_it_says() -> None:
     made, teleop = system.load(SIMULATED).experiment(), GOOD["teleops"][0]
     assert made.teleop.scale == teleop["scale"] and made.dt_s == GOOD["io"]["period_s"]
@@ -72,6 +97,13 @@ def test_a_file_is_simulated_as_it_says() -> None:
         (lambda d: d["teleops"][0].update(master="PSM1", slave="MTML"), r"\.master = 'PSM1': is a simulated_psm"),
         (lambda d: d["teleops"].append(dict(d["teleops"][0])), r"\$\.teleops\[1\]\.name = .*two teleoperations"),
         (lambda d: d["teleops"][0]["palpation"].update(kind="rub"), r"\$\.teleops\[0\]\.palpation\.kind = \"rub\""),
+        (lambda d: d["teleops"][0]["fixtures"][0].update(type="cage"), r"fixtures\[0\]\.type = \"cage\": must be"),
+        (
+            lambda d: d["teleops"][0]["fixtures"].append(
+                {"type": "plane", "name": "w", "point_m": [0, 0, 0], "normal": [0, 0, 0]}
+            ),
+            r"\$\.teleops\[0\]: fixtures\[1\]: .*normal",
+        ),
         (lambda d: d["teleops"][0]["fixtures"][0].pop("half_width_m"), r"\$\.teleops\[0\]\.fixtures\[0\] = "),
         (lambda d: d["teleops"][0].update(desired_force_N=9.0), r"\$\.teleops\[0\]: desired_force_N = 9"),
         (lambda d: d["arms"][0].update(capabilities=["measured_cp"]), r"\$\.arms\[0\]\.capabilities = .*its torque"),

@@ -11,12 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from saras import ConfigError, csa, sim
 from saras.csa import arms
-from saras.csa.surface import MeshSurface, PlaneSurface, Surface
+from saras.csa.surface import MeshSurface, PlaneSurface, Surface, load_mesh, rotation
+from saras.csa.system_fixtures import UP, fixture
 
 Array = NDArray[np.float64]
 Json = dict[str, Any]
 
-UP: Array = np.array([0.0, 0.0, 1.0])
 TELEOP_FIELDS = (
     "scale",
     "desired_force_N",
@@ -116,15 +116,11 @@ class Setup:
     def fixtures(self, region: ArrayLike | None = None) -> list[csa.Fixture]:
         """Those of the file and of the arm, and a picked region (n, 3) [m]. Raises ConfigError."""
         made = list(self.slave_model.fixtures)
-        for given in self.teleop.get("fixtures", []):
-            if given["type"] == "region":
-                x, y = given["half_width_m"] * np.eye(3)[:2]
-                corners = [self.start() + i * x + j * y for i in (-1, 1) for j in (-1, 1)]
-                made.append(csa.Fixture.hull("region", csa.region_of_interest(corners, UP)))
-            else:
-                n = np.array(given["normal"]) / np.linalg.norm(given["normal"])
-                margin, soft = given.get("margin_m", 0.0), given.get("soft", False)
-                made.append(csa.Fixture.plane(given["name"], np.array(given["point_m"]), n, margin, soft))
+        for index, given in enumerate(self.teleop.get("fixtures", [])):
+            try:
+                made.append(fixture(given, self.start(), self.path.parent))
+            except ConfigError as error:
+                raise ConfigError(f"fixtures[{index}]: {error}") from error
         if region is not None:
             points = np.asarray(region, dtype=float)
             normal = self.surface().touch(points.mean(axis=0)).normal
@@ -157,10 +153,7 @@ class Setup:
             return PlaneSurface(self.start() - height * UP, UP)
         if model["type"] == "plane":
             return PlaneSurface(model["point_m"], model["normal"])
-        pose = np.eye(4)
-        pose[:3, :3] = rotation(model.get("rpy_rad", [0.0, 0.0, 0.0]))
-        pose[:3, 3] = model.get("xyz_m", [0.0, 0.0, 0.0])
-        return MeshSurface.load(self.path.parent / model["file"], pose)
+        return MeshSurface(*load_mesh(self.path.parent / model["file"], model.get("xyz_m"), model.get("rpy_rad")))
 
     def check(self) -> None:
         """Builds everything once. Raises ConfigError for what only the controllers know."""
@@ -173,13 +166,3 @@ class Setup:
             self.tissue_config()
         elif "model" not in self.teleop:
             raise ConfigError("model: is needed where there is no phantom")
-
-
-def rotation(rpy: ArrayLike) -> Array:
-    """(3, 3) Rz(yaw) Ry(pitch) Rx(roll)."""
-    roll, pitch, yaw = np.asarray(rpy, dtype=float)
-    cr, sr, cp, sp, cy, sy = np.cos(roll), np.sin(roll), np.cos(pitch), np.sin(pitch), np.cos(yaw), np.sin(yaw)
-    z = np.array([[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]])
-    y = np.array([[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]])
-    x = np.array([[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]])
-    return np.asarray(z @ y @ x)

@@ -48,23 +48,6 @@ class MeshSurface:
         self._mesh = csa.TriangleMesh(np.asarray(vertices, dtype=float), np.asarray(triangles, dtype=np.int32))
         self._reach_m, self._hint = reach_m, -1
 
-    @classmethod
-    def load(cls, path: str | Path, base_T_mesh: ArrayLike | None = None) -> MeshSurface:
-        """From an STL, OBJ or PLY file in metres (trimesh). Raises ConfigError."""
-        try:
-            import trimesh
-        except ImportError:
-            raise ConfigError(f"{path}: reading meshes needs trimesh: pip install 'saras[regions]'") from None
-        try:
-            mesh: Any = trimesh.load(str(path), force="mesh", process=False)
-            if base_T_mesh is not None:
-                mesh.apply_transform(np.asarray(base_T_mesh, dtype=float))
-            return cls(mesh.vertices, mesh.faces)
-        except ConfigError as error:
-            raise ConfigError(f"{path}: {error}") from error
-        except Exception as error:  # trimesh raises whatever its readers do
-            raise ConfigError(f"{path}: no mesh: {error}") from error
-
     def touch(self, point: ArrayLike) -> Touch:
         """At (3,) [m]."""
         at = np.asarray(point, dtype=float)
@@ -76,3 +59,32 @@ class MeshSurface:
 
 
 Surface = Union[PlaneSurface, MeshSurface]
+
+
+def load_mesh(
+    path: str | Path, xyz_m: ArrayLike | None = None, rpy_rad: ArrayLike | None = None
+) -> tuple[Array, NDArray[np.int32]]:
+    """Vertices (n, 3) [m] and triangles (m, 3) of an STL, OBJ or PLY file in metres, moved to a place. ConfigError."""
+    try:
+        import trimesh
+    except ImportError:
+        raise ConfigError(f"{path}: reading meshes needs trimesh: pip install 'saras[regions]'") from None
+    try:
+        mesh: Any = trimesh.load(str(path), force="mesh")
+        vertices, triangles = np.asarray(mesh.vertices, dtype=float), np.asarray(mesh.faces, dtype=np.int32)
+    except Exception as error:  # trimesh raises whatever its readers do
+        raise ConfigError(f"{path}: no mesh: {error}") from error
+    if not len(triangles):
+        raise ConfigError(f"{path}: no mesh: no triangles")
+    turn = rotation(np.zeros(3) if rpy_rad is None else rpy_rad)
+    return vertices @ turn.T + (np.zeros(3) if xyz_m is None else np.asarray(xyz_m, dtype=float)), triangles
+
+
+def rotation(rpy: ArrayLike) -> Array:
+    """(3, 3) Rz(yaw) Ry(pitch) Rx(roll)."""
+    roll, pitch, yaw = np.asarray(rpy, dtype=float)
+    cr, sr, cp, sp, cy, sy = np.cos(roll), np.sin(roll), np.cos(pitch), np.sin(pitch), np.cos(yaw), np.sin(yaw)
+    z = np.array([[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]])
+    y = np.array([[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]])
+    x = np.array([[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]])
+    return np.asarray(z @ y @ x)
