@@ -22,6 +22,7 @@ from saras._core.model import (
 )
 from saras.model.exploring import CostError, Plan, TrajectoryOptimizer
 from saras.model.learning import GpLearning, learn_hyperparameters
+from saras.model.octave import OctaveCost, OctaveError
 from saras.model.registering import (
     Deformation,
     DeformationGrid,
@@ -47,6 +48,8 @@ __all__ = [
     "LocalGp",
     "LocalModelConfig",
     "Mesh",
+    "OctaveCost",
+    "OctaveError",
     "Plan",
     "Registered",
     "Registration",

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from saras import ConfigError, ModelError
 from saras._core.model import CrossEntropy
+from saras.model.octave import OctaveCost
 from saras.model.stiffness_map import StiffnessMap, SurfaceEstimates
 
 Array = npt.NDArray[np.float64]
@@ -65,14 +66,19 @@ COSTS: dict[str, Cost] = {"variance": variance, "upper_confidence": upper_confid
 
 
 def find_cost(cost: str | Cost) -> Cost:
-    """One of COSTS, an entry point of the group saras.exploration_costs, or the callable itself. Raises ConfigError."""
+    """One of COSTS, a file NAME.m for Octave, an entry point of saras.exploration_costs, or the callable itself.
+
+    Raises ConfigError, and ModelError for a .m file that does not start.
+    """
     if not isinstance(cost, str):
         return cost
     if cost in COSTS:
         return COSTS[cost]
+    if cost.endswith(".m"):
+        return OctaveCost(cost)
     installed = {point.name: point for point in entry_points(group=ENTRY_POINTS)}
     if cost not in installed:
-        raise ConfigError(f"cost = {cost!r}: must be one of {sorted([*COSTS, *installed])} or a callable")
+        raise ConfigError(f"cost = {cost!r}: must be one of {sorted([*COSTS, *installed])}, NAME.m or a callable")
     loaded: Cost = installed[cost].load()
     return loaded
 
@@ -82,9 +88,9 @@ class TrajectoryOptimizer:
 
     model: StiffnessMap. surface: (n, 2) coordinates of a chart [m] -> (n, 3) points on the surface, base frame [m] (the
     plane of a region of interest projected to a mesh, a phantom's). low, high: (2,) bounds of the chart. cost: of
-    COSTS, an entry point, or a callable. corners: of a path, without its start. step_m: expected length between two
-    corners; paths are within 0.5 and 1.5 times it. spacing_m: between the points that are asked for. time_limit_s: for
-    one call of the cost. Raises ConfigError.
+    COSTS, an entry point, a .m file, or a callable. corners: of a path, without its start. step_m: expected length
+    between two corners; paths are within 0.5 and 1.5 times it. spacing_m: between the points that are asked for.
+    time_limit_s: for one call of the cost. Raises ConfigError.
     """
 
     def __init__(
