@@ -10,6 +10,7 @@ import rosgraph
 import rospy
 from sensor_msgs.msg import JointState, Joy
 
+from saras import csa
 from saras.csa.setup import Setup
 from saras.csa.system import load
 from saras_ros1.inputs import Tick
@@ -146,6 +147,11 @@ def joint_state(names: tuple[str, ...], stamp: rospy.Time, **values: np.ndarray)
     message = JointState(name=list(names), **{name: array.tolist() for name, array in values.items()})
     message.header.stamp = stamp
     return message
+
+
+def warm_up() -> None:
+    """Scipy takes a moment to import: not under the lock, when the first region is closed."""
+    csa.region_of_interest([[0.0, 0.0, 0.0], [0.01, 0.0, 0.0], [0.0, 0.01, 0.0]])
 
 
 def vector(message: Any, values: np.ndarray) -> Any:

@@ -26,6 +26,7 @@ from saras_ros1.node import run
 DISPLAY_HZ = 15.0
 JOINTS_HZ = 10.0
 TRAIL_POINTS = 1500
+TRAIL_EVERY = 5  # drawings; it is long, and changes slowly
 LIFT_M = 0.0003
 LABEL_M = 0.022
 STEEL = ColorRGBA(0.75, 0.78, 0.82, 0.8)
@@ -55,6 +56,7 @@ class CsaDisplay(CsaNode):
         self.joints_out = self.output(f"/visualization/{self.slave}/joint_states", JointState)
         self.markers = self.output("/csa/markers", MarkerArray)
         self.trail: deque = deque(maxlen=TRAIL_POINTS)
+        self.count = 0
         self.start, self.surface = self.setup.start(), self.setup.surface()
         self.view = tf2_ros.StaticTransformBroadcaster()
         view_T_base = np.eye(4)
@@ -69,6 +71,7 @@ class CsaDisplay(CsaNode):
             self.joints_out.publish(message)
 
     def _publish(self) -> None:
+        self.count += 1
         frame, told, did = self.frame, self.told.value(), self.did.value()
         tip, proxy, closest = (_at(latest.value()) for latest in (self.tip, self.proxy, self.closest))
         touching = told is not None and told.state in (CsaTeleopState.SLAVE_CONTACT, CsaTeleopState.FULL_CONTACT)
@@ -84,7 +87,7 @@ class CsaDisplay(CsaNode):
             ball("closest point", frame, closest, RED, 0.003),
             markers.force(frame, closest, self.wrench.value()),
             *markers.region(frame, picked, bool(_points(self.region.value(FOREVER_S)))),
-            markers.trail(frame, list(self.trail)),
+            *([markers.trail(frame, list(self.trail))] if self.count % TRAIL_EVERY == 0 else []),
             ball("next location", frame, next_location, markers.NEXT, 0.0025),
             markers.label(frame, self.start + LABEL_M * UP, told, did),
         ]

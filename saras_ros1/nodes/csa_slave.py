@@ -8,7 +8,6 @@ what the controller did (admittance). What it does not know is a hold with its r
 from __future__ import annotations
 
 import math
-import threading
 import time
 
 import numpy as np
@@ -21,7 +20,7 @@ from saras import ConfigError, csa
 from saras.csa import arms
 from saras_ros1 import convert
 from saras_ros1.csa_gains import Gains
-from saras_ros1.csa_node import CsaNode, Need, joint_reader, joint_state, vector
+from saras_ros1.csa_node import CsaNode, Need, joint_reader, joint_state, vector, warm_up
 from saras_ros1.msg import CsaAdmittance, CsaTeleopState
 from saras_ros1.node import StartupError, Tick, run
 from saras_ros1.nodes.csa_proxy import read_told
@@ -61,6 +60,7 @@ class CsaSlave(CsaNode):
         self.law = csa.SlaveMlc(setup.slave_config(self.period_s))
         self.speed = np.asarray(self.arm.speed)
         self.fixtures = csa.FixtureSet(setup.fixtures())
+        warm_up()
         self.command = self.output(command, command_class)
         self.outputs = {
             topic: self.output(f"/csa/slave/{topic}", kind)
@@ -230,10 +230,4 @@ def read_stiffness(message: Float64) -> float:
 
 def main() -> int:
     """Runs the node."""
-    threading.Thread(target=_warm_up, daemon=True).start()
     return run(CsaSlave)
-
-
-def _warm_up() -> None:
-    """Scipy takes a second to import: not when the first region comes."""
-    csa.region_of_interest([[0.0, 0.0, 0.0], [0.01, 0.0, 0.0], [0.0, 0.01, 0.0]])

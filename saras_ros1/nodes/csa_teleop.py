@@ -21,7 +21,7 @@ from saras_ros1 import convert
 from saras_ros1.channel import Channel
 from saras_ros1.csa_exploring import Exploring
 from saras_ros1.csa_gains import Gains
-from saras_ros1.csa_node import PRESSED, CsaNode, Pedal, vector
+from saras_ros1.csa_node import PRESSED, CsaNode, Pedal, vector, warm_up
 from saras_ros1.msg import Contact, CsaPrimitive, CsaTeleopState
 from saras_ros1.node import Tick, run
 from saras_ros1.nodes.csa_slave import palpation
@@ -56,6 +56,7 @@ class CsaTeleop(CsaNode):
         start = setup.palpation()
         self.primitive = CsaPrimitive(KINDS[start.kind], start.amplitude, start.frequency_hz, False)
         self.picker, self.reason = RegionPicker(), "WAITING"
+        warm_up()
         self._synchronisations = 0
         self._last_proxy: np.ndarray | None = None
         self.state_out = self.output("/csa/teleop/state", CsaTeleopState)
