@@ -46,15 +46,33 @@ void bind_overlay_inset(py::module_& m) {
             }
           },
           "(n, 3) corners [m], at most 64");
+  m.def(
+      "stiffness_color",
+      [](double share) {
+        const Color c = stiffness_color(share);
+        return py::make_tuple(c.r, c.g, c.b, c.mono);
+      },
+      py::arg("share"), "Red, green, blue, and what stands for them in mono8; share: 0 softest, 1 stiffest, NaN grey.");
   py::class_<AwarenessInset>(m, "AwarenessInset", "Draws it bottom left, into images of one size.")
       .def(py::init<int, int, const S&>(), py::arg("width_px"), py::arg("height_px"), py::arg("style") = S{},
            "Raises ConfigError.")
       .def(
           "draw",
-          [](const AwarenessInset& self, const AwarenessView& view, Pixels image, const std::string& encoding) {
-            return self.draw(view, view_of(image, encoding));
+          [](const AwarenessInset& self, const AwarenessView& view, Pixels image, const std::string& encoding,
+             const Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>& dots) {
+            std::vector<InsetDot> map(static_cast<std::size_t>(dots.rows()));
+            for (Eigen::Index i = 0; i < dots.rows(); ++i) {
+              map[static_cast<std::size_t>(i)] = {dots.row(i).head<3>().transpose(), dots(i, 3)};
+            }
+            AwarenessView with_map = view;
+            with_map.dots = map.data();
+            with_map.dot_count = static_cast<int>(map.size());
+            return self.draw(with_map, view_of(image, encoding));
           },
-          py::arg("view"), py::arg("image").noconvert(), py::arg("encoding"), "False: the image is of another size.")
+          py::arg("view"), py::arg("image").noconvert(), py::arg("encoding"),
+          py::arg("dots") = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>(0, 4),
+          "dots: (n, 4) of the stiffness map, x y z [m] and share 0 to 1, NaN: not known.\n"
+          "False: the image is of another size.")
       .def("place", &AwarenessInset::place, py::arg("view"), py::arg("point"), "(2,) pixel in the box of a point (3,).")
       .def_property_readonly("box", &AwarenessInset::box, "(left, top, width, height) [px]");
 }

@@ -27,6 +27,7 @@ from saras._core.overlay import (
     color_of,
     draw_notice,
     fingerprint,
+    stiffness_color,
 )
 
 __all__ = [
@@ -53,4 +54,5 @@ __all__ = [
     "color_of",
     "draw_notice",
     "fingerprint",
+    "stiffness_color",
 ]

@@ -2,12 +2,15 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 
 namespace saras_ros1 {
 namespace {
 
 constexpr double kFresh_s = 0.3;
-constexpr double kForever_s = 1e12;  // latched: a region stays until it is cleared
+constexpr double kMapFresh_s = 3.0;     // it comes about once a second
+constexpr std::size_t kMaxDots = 3000;  // of a finer map every n-th vertex is drawn
+constexpr double kForever_s = 1e12;     // latched: a region stays until it is cleared
 constexpr std::array<const char*, 4> kStates = {"NO CONTACT", "PROXY CONTACT", "SLAVE CONTACT", "FULL CONTACT"};
 
 template <typename Point>
@@ -27,6 +30,52 @@ saras::ShortText text_of(const CsaTeleopState& told, const CsaAdmittance* did) {
     text += std::string_view(force.data(), static_cast<std::size_t>(std::clamp(size, 0, 23)));
   }
   return text;
+}
+
+/// Offset of a float32 field; negative: it has none.
+int field_offset(const sensor_msgs::PointCloud2& cloud, const char* name) {
+  for (const sensor_msgs::PointField& field : cloud.fields) {
+    if (field.name == name && field.datatype == sensor_msgs::PointField::FLOAT32 &&
+        field.offset + sizeof(float) <= cloud.point_step) {
+      return static_cast<int>(field.offset);
+    }
+  }
+  return -1;
+}
+
+/// Empty for a cloud without x, y, z, stiffness, or with less data than it says.
+std::vector<saras::InsetDot> dots_of(const sensor_msgs::PointCloud2& cloud) {
+  std::array<int, 4> offsets = {};
+  const std::array<const char*, 4> names = {"x", "y", "z", "stiffness"};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    offsets[i] = field_offset(cloud, names[i]);
+    if (offsets[i] < 0) {
+      return {};
+    }
+  }
+  const std::size_t count = static_cast<std::size_t>(cloud.width) * cloud.height;
+  if (cloud.is_bigendian || count == 0 || cloud.data.size() / cloud.point_step < count) {
+    return {};
+  }
+  const std::size_t every = (count + kMaxDots - 1) / kMaxDots;
+  std::vector<saras::InsetDot> dots;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (std::size_t i = 0; i < count; i += every) {
+    std::array<float, 4> values = {};
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      const std::size_t at = i * cloud.point_step + static_cast<std::size_t>(offsets[k]);
+      std::memcpy(&values[k], cloud.data.data() + at, sizeof(float));
+    }
+    dots.push_back({{values[0], values[1], values[2]}, values[3]});
+    if (std::isfinite(values[3])) {
+      low = std::min<double>(low, values[3]);
+      high = std::max<double>(high, values[3]);
+    }
+  }
+  for (saras::InsetDot& dot : dots) {
+    dot.share = (dot.share - low) / std::max(high - low, 1e-9);
+  }
+  return dots;
 }
 
 }  // namespace
@@ -50,6 +99,21 @@ AwarenessSource::AwarenessSource(ros::NodeHandle& handle) {
   listen(handle, "/csa/master/servo_cf", &Heard::force);
   listen(handle, "/csa/teleop/picked", &Heard::picked);
   listen(handle, "/csa/modeler/roi", &Heard::region);
+  subscribers_.push_back(handle.subscribe("/csa/modeler/stiffness", 1, &AwarenessSource::on_map, this));
+}
+
+void AwarenessSource::on_map(const sensor_msgs::PointCloud2::ConstPtr& message) {
+  const Map map = std::make_shared<const std::vector<saras::InsetDot>>(dots_of(*message));
+  heard_.change([&](Heard& heard) {
+    heard.map = map;
+    heard.map_at = ros::SteadyTime::now();
+  });
+}
+
+AwarenessSource::Map AwarenessSource::map() const {
+  const Heard heard = heard_.read();
+  const bool fresh = heard.map && (ros::SteadyTime::now() - heard.map_at).toSec() <= kMapFresh_s;
+  return fresh ? heard.map : Map{};
 }
 
 bool AwarenessSource::fill(saras::AwarenessView& view) {

@@ -6,8 +6,11 @@
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/node_handle.h>
+#include <sensor_msgs/PointCloud2.h>
 
 #include <array>
+#include <memory>
+#include <vector>
 
 #include "saras/overlay/awareness_inset.hpp"
 #include "saras/runtime/snapshot.hpp"
@@ -23,6 +26,9 @@ class AwarenessSource {
   explicit AwarenessSource(ros::NodeHandle& handle);
   /// False: nobody has ever said anything, and no inset is wanted.
   bool fill(saras::AwarenessView& view);
+  using Map = std::shared_ptr<const std::vector<saras::InsetDot>>;
+  /// Of the newest stiffness map, for view.dots; null: none, or an old one. Keep it as long as the view is drawn.
+  Map map() const;
 
  private:
   template <typename Message>
@@ -42,9 +48,12 @@ class AwarenessSource {
     Newest<Contact> contact;
     Newest<geometry_msgs::WrenchStamped> force;
     Newest<geometry_msgs::PolygonStamped> picked, region;
+    Map map;
+    ros::SteadyTime map_at;
     bool has_center = false;
     saras::Vector3 center = saras::Vector3::Zero();
   };
+  void on_map(const sensor_msgs::PointCloud2::ConstPtr& message);
   template <typename Message>
   void listen(ros::NodeHandle& handle, const std::string& topic, Newest<Message> Heard::*place);
 

@@ -244,6 +244,9 @@ void VisualFeedback::publish(std::size_t i, const sensor_msgs::ImageConstPtr& im
 void VisualFeedback::draw_inset(const Eye& eye, const saras::ImageView& image) {
   saras::AwarenessView view;
   if (awareness_ && eye.inset && awareness_->fill(view)) {
+    const AwarenessSource::Map map = awareness_->map();
+    view.dots = map ? map->data() : nullptr;
+    view.dot_count = map ? static_cast<int>(map->size()) : 0;
     eye.inset->draw(view, image);
   }
 }

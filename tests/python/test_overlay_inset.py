@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import saras
-from saras.overlay import AwarenessInset, AwarenessInsetStyle, AwarenessView
+from saras.overlay import AwarenessInset, AwarenessInsetStyle, AwarenessView, stiffness_color
 
 WIDTH, HEIGHT = 640, 480
 GREEN, RED, WHITE, YELLOW = (40, 217, 80), (255, 38, 26), (255, 255, 255), (255, 214, 0)
@@ -103,6 +103,19 @@ def test_what_is_not_known_is_not_drawn() -> None:
         assert not has(image, color)
     image, _ = drawn(view(hold=True, text="HOLD FORCE"))
     assert has(image, (255, 140, 0))
+
+
+def test_the_stiffness_map_stands_for_the_models_grid() -> None:
+    image = np.full((HEIGHT, WIDTH, 3), 120, np.uint8)
+    inset, shown = AwarenessInset(WIDTH, HEIGHT), view(text="")
+    at_m = np.add(shown.center, [[-0.012, 0.012, 0], [-0.004, 0.012, 0], [0.004, 0.012, 0], [0.012, 0.012, 0]])
+    shares = [0.0, 0.5, 1.0, np.nan]
+    assert inset.draw(shown, image, "rgb8", dots=np.c_[at_m, shares])
+    for point, share in zip(at_m, shares):
+        assert at(image, inset, shown, point) == stiffness_color(share)[:3]
+    assert stiffness_color(0.5)[:3] == (33, 145, 140) and stiffness_color(7.0)[:3] == (253, 231, 37)
+    grid = (70, 110, 150)
+    assert not has(image, grid) and has(drawn(view())[0], grid)
 
 
 @pytest.mark.parametrize(("encoding", "channels"), [("mono8", 1), ("bgr8", 3), ("rgba8", 4)])

@@ -15,7 +15,7 @@ import rostest
 from geometry_msgs.msg import Point32, PointStamped, PolygonStamped, PoseStamped, WrenchStamped
 from overlay_peers import EYES, HEIGHT, TOOLS, WIDTH, Peers
 from saras_ros1.msg import Contact, CsaAdmittance, CsaTeleopState, ToolCollision
-from sensor_msgs.msg import Image
+from sensor_msgs.msg import Image, PointCloud2, PointField
 from support import Newest, wait_until
 
 from saras.overlay import AwarenessInset, AwarenessView
@@ -68,6 +68,15 @@ class Controllers:
         self._out["master/servo_cf"].publish(convert.wrench_msg(np.array([0, 0, 2.0, 0, 0, 0]), "PSM1", now))
 
 
+def cloud(rows: list) -> PointCloud2:
+    """Vertices with stiffness and deviation, as the modeler publishes them."""
+    names = ("x", "y", "z", "stiffness", "std")
+    message = PointCloud2(height=1, width=len(rows), point_step=20, row_step=20 * len(rows))
+    message.fields = [PointField(name, 4 * i, PointField.FLOAT32, 1) for i, name in enumerate(names)]
+    message.data = np.array(rows, dtype=np.float32).tobytes()
+    return message
+
+
 def color(message: Image, point: np.ndarray) -> tuple[int, ...]:
     inset, view = AwarenessInset(WIDTH, HEIGHT), AwarenessView()
     view.center = CLOSEST
@@ -75,6 +84,11 @@ def color(message: Image, point: np.ndarray) -> tuple[int, ...]:
     left, top, _, _ = inset.box
     image = np.frombuffer(message.data, np.uint8).reshape(HEIGHT, WIDTH, 3)
     return tuple(image[round(top + row), round(left + column), ::-1].tolist())
+
+
+def yellowish(rgb: tuple[int, ...]) -> bool:
+    """As the stiffest vertex: a dot of half a pixel is mixed with its ground."""
+    return min(rgb[:2]) > 60 and rgb[2] < 0.5 * min(rgb[:2])
 
 
 def in_box(message: Image, wanted: tuple[int, ...]) -> bool:
@@ -100,6 +114,18 @@ class OverlayInset(unittest.TestCase):
                 lambda point=point, wanted=wanted: all(color(i.message, point) == wanted for i in images),
                 lambda point=point: f"{point}: {[color(i.message, point) for i in images]}",
             )
+        map_out = rospy.Publisher("/csa/modeler/stiffness", PointCloud2, queue_size=1)
+        at = CLOSEST + np.array([-0.008, 0.014, 0.0])
+
+        def mapped() -> bool:
+            map_out.publish(cloud([[*at, 900.0, 1.0], [0.0, 0.0, 0.0, 100.0, 1.0], [0.0, 0.0, 0.0, np.nan, np.inf]]))
+            return all(yellowish(color(i.message, at)) for i in images)
+
+        wait_until(mapped, lambda: f"{[color(i.message, at) for i in images]}")
+        broken = cloud([[*at, 900.0, 1.0]])
+        broken.width = 1000
+        map_out.publish(broken)  # less data than it says: no map
+        wait_until(lambda: not any(yellowish(color(i.message, at)) for i in images), "no map")
         controllers.speaks = False
         wait_until(lambda: not any(in_box(i.message, c) for i in images for c in (GREEN, RED, WHITE)), "grey")
         controllers.speaks = True

@@ -34,6 +34,7 @@ __all__: list[str] = [
     "color_of",
     "draw_notice",
     "fingerprint",
+    "stiffness_color",
 ]
 
 class CameraConfig:
@@ -897,8 +898,15 @@ class AwarenessInset:
         """
         Raises ConfigError.
         """
-    def draw(self, view: AwarenessView, image: numpy.typing.NDArray[numpy.uint8], encoding: str) -> bool:
+    def draw(
+        self,
+        view: AwarenessView,
+        image: numpy.typing.NDArray[numpy.uint8],
+        encoding: str,
+        dots: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 4]"] = ...,
+    ) -> bool:
         """
+        dots: (n, 4) of the stiffness map, x y z [m] and share 0 to 1, NaN: not known.
         False: the image is of another size.
         """
     def place(
@@ -926,4 +934,9 @@ def draw_notice(notice: OverlayNotice, image: numpy.typing.NDArray[numpy.uint8],
 def fingerprint(image: typing.Annotated[numpy.typing.ArrayLike, numpy.uint8], encoding: str) -> int:
     """
     A number that changes when any pixel does.
+    """
+
+def stiffness_color(share: typing.SupportsFloat | typing.SupportsIndex) -> tuple[int, int, int, int]:
+    """
+    Red, green, blue, and what stands for them in mono8; share: 0 softest, 1 stiffest, NaN grey.
     """

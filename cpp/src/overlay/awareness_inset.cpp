@@ -1,6 +1,7 @@
 #include "saras/overlay/awareness_inset.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "saras/spatial/validate.hpp"
@@ -38,6 +39,21 @@ int checked(const char* name, int size) {
 }
 
 }  // namespace
+
+Color stiffness_color(double share) noexcept {
+  if (!std::isfinite(share)) {
+    return {110, 110, 110, 90};
+  }
+  constexpr std::array<std::array<double, 3>, 3> kRamp = {{{68, 1, 84}, {33, 145, 140}, {253, 231, 37}}};
+  const double at = 2.0 * std::clamp(share, 0.0, 1.0);
+  const std::size_t below = at < 1.0 ? 0 : 1;
+  const double part = at - static_cast<double>(below);
+  std::array<std::uint8_t, 3> rgb = {};
+  for (std::size_t c = 0; c < 3; ++c) {
+    rgb[c] = static_cast<std::uint8_t>(std::lround(kRamp[below][c] + part * (kRamp[below + 1][c] - kRamp[below][c])));
+  }
+  return {rgb[0], rgb[1], rgb[2], static_cast<std::uint8_t>(std::lround(60.0 + 90.0 * at))};
+}
 
 void AwarenessInsetStyle::validate() const {
   validate::in_range("width", width, 0.1, 0.5);
@@ -85,6 +101,12 @@ void AwarenessInset::draw_model(const AwarenessView& view, const ImageView& box)
     const double at = half * (2.0 * i / (kGridLines - 1) - 1.0);
     draw_line(box, place(view, foot + at * x - half * y), place(view, foot + at * x + half * y), 0.5 * scale_, kGrid);
     draw_line(box, place(view, foot + at * y - half * x), place(view, foot + at * y + half * x), 0.5 * scale_, kGrid);
+  }
+}
+
+void AwarenessInset::draw_dots(const AwarenessView& view, const ImageView& box) const noexcept {
+  for (int i = 0; view.dots != nullptr && i < view.dot_count; ++i) {
+    draw_point(view, view.dots[i].at, 1.1, stiffness_color(view.dots[i].share), box);
   }
 }
 
@@ -138,7 +160,11 @@ bool AwarenessInset::draw(const AwarenessView& view, const ImageView& image) con
     font_.draw(box, margin, margin, view.text.empty() ? "?" : view.text.view(), kGrey);
     return true;
   }
-  draw_model(view, box);
+  if (view.dot_count > 0) {
+    draw_dots(view, box);
+  } else {
+    draw_model(view, box);
+  }
   draw_region(view, box);
   draw_point(view, view.tip, 3.2, kWhite, box);
   draw_force(view, box);

@@ -22,6 +22,14 @@ struct AwarenessInsetStyle {
 
 inline constexpr int kMaxRegionCorners = 64;
 
+/// A vertex of the stiffness map.
+struct InsetDot {
+  Vector3 at = Vector3::Zero();
+  double share = std::numeric_limits<double>::quiet_NaN();  ///< 0: the softest, 1: the stiffest; NaN: not known, grey
+};
+/// Dark violet over green to yellow, as the map's own colours; grey for NaN.
+Color stiffness_color(double share) noexcept;
+
 /// Everything in one frame, the slave's base; what is not finite is not known, and not drawn.
 struct AwarenessView {
   bool known = false;  ///< else only a grey "?" is written
@@ -36,6 +44,8 @@ struct AwarenessView {
   std::array<Vector3, kMaxRegionCorners> region = {};
   int region_corners = 0;
   bool region_closed = false;
+  const InsetDot* dots = nullptr;  ///< of the stiffness map; must live as long as it is drawn
+  int dot_count = 0;
 };
 
 class AwarenessInset {
@@ -51,6 +61,7 @@ class AwarenessInset {
 
  private:
   void draw_model(const AwarenessView& view, const ImageView& box) const noexcept;
+  void draw_dots(const AwarenessView& view, const ImageView& box) const noexcept;
   void draw_region(const AwarenessView& view, const ImageView& box) const noexcept;
   void draw_force(const AwarenessView& view, const ImageView& box) const noexcept;
   void draw_point(const AwarenessView& view, const Vector3& point, double radius_px, Color color,
