@@ -170,6 +170,9 @@ def run_system(arguments: argparse.Namespace, out: Path) -> None:
         wait_for_master(core)
         import rospy
 
+        from saras_ros1 import direct_publishing
+
+        direct_publishing.install()
         rospy.init_node("demo", disable_signals=True)
         facts = publish_facts(arguments)
         rviz = not arguments.headless and bool(os.environ.get("DISPLAY"))

@@ -22,7 +22,7 @@ STATE_TOPIC = "/csa/teleop/state"
 STATES = ("NO_CONTACT", "PROXY_CONTACT", "SLAVE_CONTACT", "FULL_CONTACT")
 CSS = ("waiting", "ready", "clutch", "engaged")
 FULL, HOLD = 3, 4
-SETTLE_S = 1.0  #: of full contact that is left out before force is judged
+SETTLE_S = 1.0  #: of full contact, and of a new region, that is left out before they are judged
 FORCE_SHARE = 0.05  #: RMS error of the mean desired force that is good; twice that is a warning
 REGION_M = 0.0002  #: what the measured tip may be outside the region: the arm lags its set-point
 RATES = (
@@ -100,7 +100,7 @@ def region(session: Session) -> tuple[float, Floats] | None:
 
 
 def outside(session: Session) -> tuple[Floats, Floats] | None:
-    """(t, how far the measured tip is outside the picked region [m], negative inside) since it was closed."""
+    """(t, how far the measured tip is outside the picked region [m], negative inside) from SETTLE_S after its closing."""
     from saras.csa.hulls import region_of_interest
 
     picked, tip = region(session), pose_series(session.topic("/csa/slave/measured_cp"))
@@ -111,7 +111,7 @@ def outside(session: Session) -> tuple[Floats, Floats] | None:
         faces = region_of_interest(corners, [0.0, 0.0, 1.0])
     except ConfigError:
         return None
-    late = tip.t > since
+    late = tip.t > since + SETTLE_S  # it may be closed with the tip just outside
     return tip.t[late], (tip.position[late] @ faces[:, :3].T - faces[:, 3]).max(axis=1)
 
 
