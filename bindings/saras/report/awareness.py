@@ -100,7 +100,7 @@ def region(session: Session) -> tuple[float, Floats] | None:
 
 
 def outside(session: Session) -> tuple[Floats, Floats] | None:
-    """(t, how far the measured tip is outside the picked region [m], negative inside) from SETTLE_S after its closing."""
+    """(t, how far the measured tip is outside the picked region [m]; inside < 0) from SETTLE_S after its closing."""
     from saras.csa.hulls import region_of_interest
 
     picked, tip = region(session), pose_series(session.topic("/csa/slave/measured_cp"))
