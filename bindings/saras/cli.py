@@ -21,7 +21,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "board": ("saras.calibration.board_command", "make the calibration board: PDF, SVG, YAML"),
     "calibrate": ("saras.calibration.calibrate_command", "calibrate arms, endoscope and cameras, step by step"),
     "console": ("saras.console.command", "read the two handles, guard their ports, talk to the platform over UDP"),
-    "csa": ("saras.csa.command", "check a system file of situational awareness, or simulate it"),
+    "csa": ("saras.csa.command", "situational awareness: check a system file, simulate it, live arrays of what runs"),
     "dataset": ("saras.dataset.command", "make aligned tables for learning from recordings"),
     "endoscope": ("saras.sim.endoscope.command", "draw what the simulated stereo endoscope sees"),
     "keys": ("saras.net.command", "make and check the key file of a console's link over a network"),

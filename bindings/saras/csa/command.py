@@ -1,7 +1,8 @@
-"""Complementary situational awareness: check a system file, or run its simulation.
+"""Complementary situational awareness: check a system file, run its simulation, look at what runs as arrays.
 
 saras csa check config/csa/simulated.json
 saras csa run config/csa/simulated.json --plot csa.png --npz csa.npz
+saras csa shell                                   # needs ROS: a prompt whose arrays follow /csa/...
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from saras import ConfigError, csa
+from saras.csa import shell
 from saras.csa.simulation import CsaResult, simulate
 from saras.csa.system import load
 
@@ -21,10 +23,11 @@ NAMES = {int(state): name for name, state in csa.ContactState.__members__.items(
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Adds check and run."""
+    """Adds check, run and shell."""
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
     check = actions.add_parser("check", help="read a system file and say what is in it")
     run_ = actions.add_parser("run", help="simulate a teleoperation of a system file: the sweep over the phantom")
+    shell.add_arguments(actions.add_parser("shell", help="a Python prompt whose arrays follow the topics (needs ROS)"))
     for action in (check, run_):
         action.add_argument("system", type=Path, help="system file (JSON)")
     run_.add_argument("--teleop", help="name; the first of the file by default")
@@ -35,6 +38,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Exit code; refused input is a saras.Error."""
+    if arguments.action == "shell":
+        return shell.run(arguments)
     system = load(arguments.system)
     if arguments.action == "check":
         for teleop in system.document["teleops"]:
