@@ -21,6 +21,7 @@ from geometry_msgs.msg import PointStamped, PolygonStamped, PoseStamped, WrenchS
 from saras_ros1.msg import CsaAdmittance, CsaPrimitive, CsaTeleopState
 from saras_ros1.srv import SetGains, SetPrimitive
 from sensor_msgs.msg import JointState
+from std_msgs.msg import Empty
 from std_srvs.srv import SetBool
 from support import ROOT, Newest, spawn, wait_until
 
@@ -46,6 +47,7 @@ class Csa(unittest.TestCase):
         cls.told = Newest("/csa/teleop/state", CsaTeleopState)
         cls.did = Newest("/csa/slave/admittance", CsaAdmittance)
         cls.command = Newest("/PSM1/servo_jp", JointState)
+        cls.torques, cls.held = Newest("/MTML/servo_jf", JointState), Newest("/MTML/hold", Empty)
         cls.tip = Newest("/csa/slave/measured_cp", PoseStamped)
         cls.set_point = Newest("/csa/slave/setpoint_cp", PoseStamped)
         cls.proxy = Newest("/csa/proxy/measured_cp", PoseStamped)
@@ -87,6 +89,7 @@ class Csa(unittest.TestCase):
         self.holds_because("not enabled")
         self.assertFalse(self.told.message.enabled)
         self.assertEqual(self.command.all, [])
+        self.assertEqual(self.torques.all, [])  # an arm without torque would fall
         rospy.wait_for_service("/csa/teleop/enable")
         rospy.ServiceProxy("/csa/teleop/enable", SetBool)(True)
         self.holds_because("operator not present")
@@ -231,9 +234,15 @@ class Csa(unittest.TestCase):
         self.reach(FULL, "after csa_proxy came back")
 
     def test_b4_the_operator_leaves(self) -> None:
+        self.held.clear()
         self.surgeon.press("present", 0)
         self.holds_because("operator not present")
         self.assertFalse(self.told.message.enabled)
+        wait_until(lambda: self.held.all, "the master is told to hold")
+        self.torques.clear()
+        self.tip.clear()
+        wait_until(lambda: len(self.tip.all) > 30, "the slave")
+        self.assertEqual(self.torques.all, [])
         self.surgeon.press("present", 1)
         self.reach(FULL, "after the operator came back")
 
