@@ -1,6 +1,5 @@
-#include <algorithm>
+#include "bind_net.hpp"
 
-#include "law.hpp"
 #include "rooms.hpp"
 #include "saras/net/crc32.hpp"
 #include "saras/net/link_age.hpp"
@@ -10,39 +9,6 @@
 
 namespace saras::bindings {
 namespace {
-
-template <typename Bytes>
-py::bytes to_bytes(const Bytes& bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
-template <typename Decode>
-auto decode_buffer(const py::buffer& data, Decode decode) {
-  const py::buffer_info info = data.request();
-  return decode(static_cast<const std::uint8_t*>(info.ptr), static_cast<std::size_t>(info.size * info.itemsize));
-}
-
-Authentication authentication(bool authenticated) {
-  return authenticated ? Authentication::kTag : Authentication::kNone;
-}
-
-template <typename Packet>
-auto frame_checker() {
-  return [](const py::buffer& data, bool authenticated) {
-    const PacketFault fault = decode_buffer(data, [&](const std::uint8_t* bytes, std::size_t size) {
-      return check_frame<Packet>(bytes, size, authentication(authenticated));
-    });
-    if (fault) {
-      throw ProtocolError(to_string(fault));
-    }
-  };
-}
-
-constexpr const char* kCheckFrameDoc =
-    "Length, magic, version, and a tag or none as wanted: what is checked before the tag. Raises ProtocolError.";
-constexpr const char* kEncodeDoc = "Bytes; raises ProtocolError. An authenticated datagram is whole only after seal().";
-constexpr const char* kDecodeDoc =
-    "Strict; raises ProtocolError naming field and value. The tag is the caller's to check, before.";
 
 void bind_parts(py::module_& m) {
   py::enum_<ChannelState>(m, "ChannelState", "Whether one side teleoperates. Same numbers as saras_ros1/ChannelState.")
@@ -103,24 +69,7 @@ void bind_up(py::module_& m) {
       .field("sender_time_ns", &TouchballUp::sender_time_ns, "sender's monotonic clock [ns]");
   nested(packet, "left", &TouchballUp::left, "TouchballUpSide");
   nested(packet, "right", &TouchballUp::right, "TouchballUpSide");
-  packet.cls()
-      .def(
-          "encode",
-          [](const TouchballUp& self, bool authenticated) {
-            return to_bytes(encode(self, authentication(authenticated)));
-          },
-          py::arg("authenticated") = false, kEncodeDoc)
-      .def_static("check_frame", frame_checker<TouchballUp>(), py::arg("data"), py::arg("authenticated"),
-                  kCheckFrameDoc)
-      .def_static(
-          "decode",
-          [](const py::buffer& data, bool authenticated) {
-            return decode_buffer(data, [&](const std::uint8_t* bytes, std::size_t size) {
-              return decode_up(bytes, size, authentication(authenticated));
-            });
-          },
-          py::arg("data"), py::arg("authenticated") = false, kDecodeDoc)
-      .def_readonly_static("SIZE", &kTouchballUpSize);
+  bind_codec(packet, decode_up, kTouchballUpSize);
 }
 
 void bind_down(py::module_& m) {
@@ -140,71 +89,16 @@ void bind_down(py::module_& m) {
       .field("echo_hold_ns", &TouchballDown::echo_hold_ns, "from its arrival to the sending of this datagram [ns]");
   nested(packet, "left", &TouchballDown::left, "TouchballDownSide");
   nested(packet, "right", &TouchballDown::right, "TouchballDownSide");
-  packet.cls()
-      .def(
-          "encode",
-          [](const TouchballDown& self, bool authenticated) {
-            return to_bytes(encode(self, authentication(authenticated)));
-          },
-          py::arg("authenticated") = false, kEncodeDoc)
-      .def_static("check_frame", frame_checker<TouchballDown>(), py::arg("data"), py::arg("authenticated"),
-                  kCheckFrameDoc)
-      .def_static(
-          "decode",
-          [](const py::buffer& data, bool authenticated) {
-            return decode_buffer(data, [&](const std::uint8_t* bytes, std::size_t size) {
-              return decode_down(bytes, size, authentication(authenticated));
-            });
-          },
-          py::arg("data"), py::arg("authenticated") = false, kDecodeDoc)
-      .def_readonly_static("SIZE", &kTouchballDownSize);
+  bind_codec(packet, decode_down, kTouchballDownSize);
 }
 
-/// A nonce as bytes on the Python side.
-using Nonce = std::array<std::uint8_t, 16>;
-
-Nonce to_nonce(const py::bytes& value) {
-  const std::string text = value;
-  Nonce nonce;
-  if (text.size() != nonce.size()) {
-    throw ProtocolError("nonce: " + std::to_string(text.size()) + " bytes: must be 16");
-  }
-  std::copy(text.begin(), text.end(), nonce.begin());
-  return nonce;
-}
-
-void bind_handshake(py::module_& m) {
-  Struct<TouchballHandshake> packet(m, "TouchballHandshake", "Message that begins an authenticated session.");
-  packet
-      .field(
-          "nonce", [](TouchballHandshake& self) { return to_bytes(self.nonce); },
-          [](TouchballHandshake& self, const py::bytes& value) { self.nonce = to_nonce(value); },
-          "(16 bytes) drawn by the sender")
-      .field(
-          "echo", [](TouchballHandshake& self) { return to_bytes(self.echo); },
-          [](TouchballHandshake& self, const py::bytes& value) { self.echo = to_nonce(value); },
-          "(16 bytes) the receiver's own nonce, as the sender heard it; 0: none");
-  packet.cls()
-      .def(
-          "encode",
-          [](const TouchballHandshake& self) {
-            TouchballHandshakeBytes bytes;
-            encode(self, bytes);
-            return to_bytes(bytes);
-          },
-          "Bytes, whole only after seal().")
-      .def_static("check_frame", frame_checker<TouchballHandshake>(), py::arg("data"), py::arg("authenticated") = true,
-                  kCheckFrameDoc)
-      .def_static(
-          "decode", [](const py::buffer& data) { return decode_buffer(data, decode_handshake); }, py::arg("data"),
-          kDecodeDoc)
-      .def_readonly_static("SIZE", &kTouchballHandshakeSize);
+void bind_seal(py::module_& m) {
   m.def(
       "seal",
       [](const py::bytes& data, const py::bytes& tag) {
         std::string bytes = data;
         const std::string value = tag;
-        if (bytes.size() < kTouchballTrailerSize || value.size() != kTouchballTagSize) {
+        if (bytes.size() < kPacketTrailerSize || value.size() != kPacketTagSize) {
           throw ProtocolError("seal: " + std::to_string(bytes.size()) + " bytes with a tag of " +
                               std::to_string(value.size()) + ": must be at least 20 and 16");
         }
@@ -214,8 +108,8 @@ void bind_handshake(py::module_& m) {
       },
       py::arg("data"), py::arg("tag"),
       "An encoded datagram with its tag (16 bytes) and checksum at the end. The tag is that of data[:-TRAILER_SIZE].");
-  m.attr("TAG_SIZE") = kTouchballTagSize;
-  m.attr("TRAILER_SIZE") = kTouchballTrailerSize;
+  m.attr("TAG_SIZE") = kPacketTagSize;
+  m.attr("TRAILER_SIZE") = kPacketTrailerSize;
 }
 
 void bind_stream(py::module_& m) {
@@ -263,8 +157,10 @@ void bind_net(py::module_& m) {
   bind_parts(m);
   bind_up(m);
   bind_down(m);
-  bind_handshake(m);
+  bind_handshake<TouchballHandshake>(m, "TouchballHandshake", decode_handshake);
+  bind_seal(m);
   bind_stream(m);
+  bind_net_csa(m);
   m.def(
       "crc32", [](const py::buffer& data) { return decode_buffer(data, crc32); }, py::arg("data"),
       "CRC-32 of IEEE 802.3, as zlib.crc32.");

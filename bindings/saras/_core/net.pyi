@@ -10,7 +10,14 @@ import typing
 import typing_extensions
 
 __all__: list[str] = [
+    "CSA_MAX_JOINTS",
     "ChannelState",
+    "CsaDown",
+    "CsaHandshake",
+    "CsaHold",
+    "CsaMode",
+    "CsaSlaveState",
+    "CsaUp",
     "GuardState",
     "LinkAge",
     "PortLedger",
@@ -831,6 +838,508 @@ class LinkAge:
         Forget the minimum (new session, new clock).
         """
 
+class CsaSlaveState:
+    """
+    Operating state of a slave arm, as in CRTK.
+
+    Members:
+
+      DISABLED
+
+      ENABLED
+
+      PAUSED
+
+      FAULT
+    """
+
+    DISABLED: typing.ClassVar[CsaSlaveState]
+    ENABLED: typing.ClassVar[CsaSlaveState]
+    FAULT: typing.ClassVar[CsaSlaveState]
+    PAUSED: typing.ClassVar[CsaSlaveState]
+    __members__: typing.ClassVar[dict[str, CsaSlaveState]]
+    @typing.overload
+    def __eq__(self, other: CsaSlaveState) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: CsaSlaveState) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class CsaHold:
+    """
+    Whether a slave follows, and why not.
+
+    Members:
+
+      NONE
+
+      NOT_ENGAGED
+
+      NO_SET_POINT
+
+      REFUSED
+
+      DEVICE_FAULT
+    """
+
+    DEVICE_FAULT: typing.ClassVar[CsaHold]
+    NONE: typing.ClassVar[CsaHold]
+    NOT_ENGAGED: typing.ClassVar[CsaHold]
+    NO_SET_POINT: typing.ClassVar[CsaHold]
+    REFUSED: typing.ClassVar[CsaHold]
+    __members__: typing.ClassVar[dict[str, CsaHold]]
+    @typing.overload
+    def __eq__(self, other: CsaHold) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: CsaHold) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class CsaMode:
+    """
+    What a slave is to follow.
+
+    Members:
+
+      HOLD
+
+      JOINTS
+
+      CARTESIAN
+    """
+
+    CARTESIAN: typing.ClassVar[CsaMode]
+    HOLD: typing.ClassVar[CsaMode]
+    JOINTS: typing.ClassVar[CsaMode]
+    __members__: typing.ClassVar[dict[str, CsaMode]]
+    @typing.overload
+    def __eq__(self, other: CsaMode) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: CsaMode) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class CsaUp:
+    """
+    Datagram of a slave arm: what it measures, and whether it follows.
+    """
+
+    SIZE: typing.ClassVar[int] = 548
+    _fields: typing.ClassVar[list] = [
+        "session",
+        "seq",
+        "sender_time_ns",
+        "echo_session",
+        "echo_seq",
+        "echo_time_ns",
+        "echo_hold_ns",
+        "homed",
+        "has_force",
+        "state",
+        "hold",
+        "engagement",
+        "position",
+        "velocity",
+        "effort",
+        "base_T_tip",
+        "tip_position_m",
+        "tip_quaternion_xyzw",
+        "tip_twist",
+        "tip_wrench",
+    ]
+    @staticmethod
+    def check_frame(data: typing_extensions.Buffer, authenticated: bool) -> None:
+        """
+        Length, magic, version, and a tag or none as wanted: what is checked before the tag. Raises ProtocolError.
+        """
+    @staticmethod
+    def decode(data: typing_extensions.Buffer, authenticated: bool = False) -> CsaUp:
+        """
+        Strict; raises ProtocolError naming field and value. The tag is the caller's to check, before.
+        """
+    def __copy__(self) -> CsaUp: ...
+    def __deepcopy__(self, arg0: dict) -> CsaUp: ...
+    def __init__(self, **kwargs) -> None:
+        """
+        Datagram of a slave arm: what it measures, and whether it follows.
+        """
+    def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
+    def encode(self, authenticated: bool = False) -> bytes:
+        """
+        Bytes; raises ProtocolError. An authenticated datagram is whole only after seal().
+        """
+    @property
+    def base_T_tip(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (4, 4) tip in the slave's base frame
+        """
+    @base_T_tip.setter
+    def base_T_tip(self, arg1: numpy.typing.ArrayLike) -> None: ...
+    @property
+    def echo_hold_ns(self) -> int:
+        """
+        from its arrival to the sending of this one [ns]
+        """
+    @echo_hold_ns.setter
+    def echo_hold_ns(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def echo_seq(self) -> int:
+        """
+        its seq
+        """
+    @echo_seq.setter
+    def echo_seq(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def echo_session(self) -> int:
+        """
+        newest of the other direction; 0: none yet
+        """
+    @echo_session.setter
+    def echo_session(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def echo_time_ns(self) -> int:
+        """
+        its sender_time_ns
+        """
+    @echo_time_ns.setter
+    def echo_time_ns(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def effort(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) [N m, N]; 0 where it is not measured
+        """
+    @effort.setter
+    def effort(self, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> None: ...
+    @property
+    def engagement(self) -> int:
+        """
+        the one that it follows, or that it ended
+        """
+    @engagement.setter
+    def engagement(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def has_force(self) -> bool:
+        """
+        tip_wrench is measured; else it means nothing
+        """
+    @has_force.setter
+    def has_force(self, arg1: bool) -> None: ...
+    @property
+    def hold(self) -> CsaHold:
+        """
+        CsaHold
+        """
+    @hold.setter
+    def hold(self, arg1: CsaHold) -> None: ...
+    @property
+    def homed(self) -> bool:
+        """
+        ready to be enabled
+        """
+    @homed.setter
+    def homed(self, arg1: bool) -> None: ...
+    @property
+    def position(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) n = 1 … 12 joints [rad] or [m]
+        """
+    @position.setter
+    def position(self, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> None: ...
+    @property
+    def sender_time_ns(self) -> int:
+        """
+        sender's monotonic clock [ns]
+        """
+    @sender_time_ns.setter
+    def sender_time_ns(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def seq(self) -> int:
+        """
+        counts datagrams of this session
+        """
+    @seq.setter
+    def seq(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def session(self) -> int:
+        """
+        larger for every restart of the sender
+        """
+    @session.setter
+    def session(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def state(self) -> CsaSlaveState:
+        """
+        CsaSlaveState
+        """
+    @state.setter
+    def state(self, arg1: CsaSlaveState) -> None: ...
+    @property
+    def tip_position_m(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) as on the wire [m]
+        """
+    @tip_position_m.setter
+    def tip_position_m(self, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+    @property
+    def tip_quaternion_xyzw(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 1]"]:
+        """
+        (4,) unit quaternion as on the wire, scalar last
+        """
+    @tip_quaternion_xyzw.setter
+    def tip_quaternion_xyzw(self, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 1]"]) -> None: ...
+    @property
+    def tip_twist(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (6,) of the tip, base axes
+        """
+    @tip_twist.setter
+    def tip_twist(self, arg1: numpy.typing.ArrayLike) -> None: ...
+    @property
+    def tip_wrench(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (6,) exerted on the tissue, at the tip, base axes
+        """
+    @tip_wrench.setter
+    def tip_wrench(self, arg1: numpy.typing.ArrayLike) -> None: ...
+    @property
+    def velocity(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) [rad/s, m/s]
+        """
+    @velocity.setter
+    def velocity(self, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> None: ...
+
+class CsaDown:
+    """
+    Datagram to a slave arm: its set-point.
+    """
+
+    SIZE: typing.ClassVar[int] = 252
+    _fields: typing.ClassVar[list] = [
+        "session",
+        "seq",
+        "sender_time_ns",
+        "echo_session",
+        "echo_seq",
+        "echo_time_ns",
+        "echo_hold_ns",
+        "mode",
+        "engagement",
+        "position",
+        "base_T_tip",
+        "tip_position_m",
+        "tip_quaternion_xyzw",
+    ]
+    @staticmethod
+    def check_frame(data: typing_extensions.Buffer, authenticated: bool) -> None:
+        """
+        Length, magic, version, and a tag or none as wanted: what is checked before the tag. Raises ProtocolError.
+        """
+    @staticmethod
+    def decode(data: typing_extensions.Buffer, authenticated: bool = False) -> CsaDown:
+        """
+        Strict; raises ProtocolError naming field and value. The tag is the caller's to check, before.
+        """
+    def __copy__(self) -> CsaDown: ...
+    def __deepcopy__(self, arg0: dict) -> CsaDown: ...
+    def __init__(self, **kwargs) -> None:
+        """
+        Datagram to a slave arm: its set-point.
+        """
+    def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
+    def encode(self, authenticated: bool = False) -> bytes:
+        """
+        Bytes; raises ProtocolError. An authenticated datagram is whole only after seal().
+        """
+    @property
+    def base_T_tip(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (4, 4) tip in the slave's base frame
+        """
+    @base_T_tip.setter
+    def base_T_tip(self, arg1: numpy.typing.ArrayLike) -> None: ...
+    @property
+    def echo_hold_ns(self) -> int:
+        """
+        from its arrival to the sending of this one [ns]
+        """
+    @echo_hold_ns.setter
+    def echo_hold_ns(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def echo_seq(self) -> int:
+        """
+        its seq
+        """
+    @echo_seq.setter
+    def echo_seq(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def echo_session(self) -> int:
+        """
+        newest of the other direction; 0: none yet
+        """
+    @echo_session.setter
+    def echo_session(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def echo_time_ns(self) -> int:
+        """
+        its sender_time_ns
+        """
+    @echo_time_ns.setter
+    def echo_time_ns(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def engagement(self) -> int:
+        """
+        larger for every engagement; 0: none
+        """
+    @engagement.setter
+    def engagement(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def mode(self) -> CsaMode:
+        """
+        CsaMode
+        """
+    @mode.setter
+    def mode(self, arg1: CsaMode) -> None: ...
+    @property
+    def position(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) set-point with JOINTS, else empty [rad] or [m]
+        """
+    @position.setter
+    def position(self, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> None: ...
+    @property
+    def sender_time_ns(self) -> int:
+        """
+        sender's monotonic clock [ns]
+        """
+    @sender_time_ns.setter
+    def sender_time_ns(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def seq(self) -> int:
+        """
+        counts datagrams of this session
+        """
+    @seq.setter
+    def seq(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def session(self) -> int:
+        """
+        larger for every restart of the sender
+        """
+    @session.setter
+    def session(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def tip_position_m(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) as on the wire [m]
+        """
+    @tip_position_m.setter
+    def tip_position_m(self, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+    @property
+    def tip_quaternion_xyzw(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 1]"]:
+        """
+        (4,) unit quaternion as on the wire, scalar last
+        """
+    @tip_quaternion_xyzw.setter
+    def tip_quaternion_xyzw(self, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 1]"]) -> None: ...
+
+class CsaHandshake:
+    """
+    Message that begins an authenticated session.
+    """
+
+    SIZE: typing.ClassVar[int] = 60
+    _fields: typing.ClassVar[list] = ["nonce", "echo"]
+    @staticmethod
+    def check_frame(data: typing_extensions.Buffer, authenticated: bool = True) -> None:
+        """
+        Length, magic, version, and a tag or none as wanted: what is checked before the tag. Raises ProtocolError.
+        """
+    @staticmethod
+    def decode(data: typing_extensions.Buffer) -> CsaHandshake:
+        """
+        Strict; raises ProtocolError naming field and value. The tag is the caller's to check, before.
+        """
+    def __copy__(self) -> CsaHandshake: ...
+    def __deepcopy__(self, arg0: dict) -> CsaHandshake: ...
+    def __init__(self, **kwargs) -> None:
+        """
+        Message that begins an authenticated session.
+        """
+    def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
+    def encode(self) -> bytes:
+        """
+        Bytes, whole only after seal().
+        """
+    @property
+    def echo(self) -> bytes:
+        """
+        (16 bytes) the receiver's own nonce, as the sender heard it; 0: none
+        """
+    @echo.setter
+    def echo(self, arg1: bytes) -> None: ...
+    @property
+    def nonce(self) -> bytes:
+        """
+        (16 bytes) drawn by the sender
+        """
+    @nonce.setter
+    def nonce(self, arg1: bytes) -> None: ...
+
 def crc32(data: typing_extensions.Buffer) -> int:
     """
     CRC-32 of IEEE 802.3, as zlib.crc32.
@@ -841,5 +1350,6 @@ def seal(data: bytes, tag: bytes) -> bytes:
     An encoded datagram with its tag (16 bytes) and checksum at the end. The tag is that of data[:-TRAILER_SIZE].
     """
 
+CSA_MAX_JOINTS: int = 12
 TAG_SIZE: int = 16
 TRAILER_SIZE: int = 20

@@ -1,4 +1,4 @@
-"""Datagrams between a console and the platform (docs/protocols.md), and what a receiver needs around them.
+"""Datagrams between consoles, slave arms and the platform (docs/protocols.md), and what a receiver needs around them.
 
 Authentication is in ``saras.net.trust``, its key file in ``saras.net.keys``.
 
@@ -7,7 +7,14 @@ Pure: no sockets, no clocks. ``TouchballUp.decode(data)`` and ``packet.encode()`
 """
 
 from saras._core.net import (
+    CSA_MAX_JOINTS,
     ChannelState,
+    CsaDown,
+    CsaHandshake,
+    CsaHold,
+    CsaMode,
+    CsaSlaveState,
+    CsaUp,
     GuardState,
     LinkAge,
     PortLedger,
@@ -26,7 +33,14 @@ from saras._core.net import (
 )
 
 __all__ = [
+    "CSA_MAX_JOINTS",
     "ChannelState",
+    "CsaDown",
+    "CsaHandshake",
+    "CsaHold",
+    "CsaMode",
+    "CsaSlaveState",
+    "CsaUp",
     "GuardState",
     "LinkAge",
     "PortLedger",

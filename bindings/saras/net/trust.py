@@ -1,4 +1,4 @@
-"""Authenticated sessions of Touchball UDP (docs/protocols.md): one end each for console and platform.
+"""Authenticated sessions of Touchball UDP and CSA UDP (docs/protocols.md): one end each for console and platform.
 
 No socket and no clock: bytes and monotonic times go in, bytes and packets come out. Tags are HMAC-SHA-256 of Python's
 own ``hmac`` (OpenSSL), truncated to 16 bytes.
@@ -18,6 +18,9 @@ from typing import Generic, TypeVar, Union
 from saras import ProtocolError
 from saras._core.net import (
     TRAILER_SIZE,
+    CsaDown,
+    CsaHandshake,
+    CsaUp,
     ReplayVerdict,
     ReplayWindow,
     TouchballDown,
@@ -31,6 +34,7 @@ TAG_BYTES = 16
 NONCE_BYTES = 16
 NONE = bytes(NONCE_BYTES)  #: echo of an end that has heard no nonce
 LABEL = b"saras touchball session 1"  #: begins unlike any datagram, so that no datagram's tag is a session key
+CSA_LABEL = b"saras csa session 1"
 
 RETRY_NS = 100_000_000  #: between two messages of a console's handshake
 UNHEARD_NS = 500_000_000  #: a console that the platform has not shown to hear for so long asks for a new session
@@ -56,9 +60,9 @@ _REPLAYS = {
 }
 
 Draw = Callable[[int], bytes]
-Packet = Union[TouchballUp, TouchballDown]
-Outgoing = TypeVar("Outgoing", TouchballUp, TouchballDown)
-Incoming = TypeVar("Incoming", TouchballUp, TouchballDown)
+Message = Union[TouchballHandshake, CsaHandshake]
+Outgoing = TypeVar("Outgoing", TouchballUp, TouchballDown, CsaUp, CsaDown)
+Incoming = TypeVar("Incoming", TouchballUp, TouchballDown, CsaUp, CsaDown)
 
 
 class TrustError(ProtocolError):  # type: ignore[misc]
@@ -74,9 +78,11 @@ class Session:
 
     __slots__ = ("console_nonce", "down_key", "heard_ns", "is_heard", "platform_nonce", "up_key")
 
-    def __init__(self, keys: Keys, console_nonce: bytes, platform_nonce: bytes, now_ns: int) -> None:
+    def __init__(
+        self, keys: Keys, console_nonce: bytes, platform_nonce: bytes, now_ns: int, label: bytes = LABEL
+    ) -> None:
         self.console_nonce, self.platform_nonce = console_nonce, platform_nonce
-        context = LABEL + console_nonce + platform_nonce
+        context = label + console_nonce + platform_nonce
         self.up_key = hmac.digest(keys.up, context, "sha256")
         self.down_key = hmac.digest(keys.down, context, "sha256")
         self.heard_ns = now_ns
@@ -97,6 +103,8 @@ class End(Generic[Outgoing, Incoming]):
     """What both ends do alike. The session is replaced whole, so that another thread may seal meanwhile."""
 
     _incoming: type[Incoming]
+    _message: type[Message] = TouchballHandshake
+    _label = LABEL
 
     def __init__(self, keys: Keys, send_key: bytes, receive_key: bytes, draw: Draw) -> None:
         self._keys, self._send_key, self._receive_key = keys, send_key, receive_key
@@ -150,19 +158,19 @@ class End(Generic[Outgoing, Incoming]):
                 raise error from None
             raise self._refused("unauthenticated", str(error)) from None  # good, but of a sender without a key
 
-    def _open_handshake(self, data: bytes) -> TouchballHandshake:
-        TouchballHandshake.check_frame(data)
+    def _open_handshake(self, data: bytes) -> Message:
+        self._message.check_frame(data)
         if not has_tag(self._receive_key, data):
             raise self._refused("unauthenticated", "handshake: forged, damaged or of another key file")
-        return TouchballHandshake.decode(data)
+        return self._message.decode(data)
 
     def _handshake(self, nonce: bytes, echo: bytes) -> bytes:
-        data = TouchballHandshake(nonce=nonce, echo=echo).encode()
+        data: bytes = self._message(nonce=nonce, echo=echo).encode()
         return seal(data, tag(self._send_key, data))
 
     def _adopt(self, console_nonce: bytes, platform_nonce: bytes, now_ns: int) -> None:
         self._window.reset()
-        self.session = Session(self._keys, console_nonce, platform_nonce, now_ns)
+        self.session = Session(self._keys, console_nonce, platform_nonce, now_ns, self._label)
         self.counts["handshakes"] += 1
 
     def _refused(self, count: str, reason: str) -> TrustError:
@@ -170,10 +178,8 @@ class End(Generic[Outgoing, Incoming]):
         return TrustError(count, reason)
 
 
-class ConsoleEnd(End[TouchballUp, TouchballDown]):
+class AskingEnd(End[Outgoing, Incoming]):
     """The end that asks for sessions: at its start, and when the platform does not show that it hears."""
-
-    _incoming = TouchballDown
 
     def __init__(self, keys: Keys, draw: Draw = secrets.token_bytes) -> None:
         super().__init__(keys, keys.up, keys.down, draw)
@@ -210,9 +216,9 @@ class ConsoleEnd(End[TouchballUp, TouchballDown]):
         self._asked, self._proven_ns, self._next_ns = None, now_ns, now_ns + RETRY_NS
         return self._confirmation
 
-    def open(self, data: bytes, now_ns: int) -> TouchballDown:
+    def open(self, data: bytes, now_ns: int) -> Incoming:
         """As End.open. A datagram under the session's keys shows that the platform has begun it, too."""
-        packet = super().open(data, now_ns)
+        packet: Incoming = super().open(data, now_ns)  # type: ignore[assignment]
         self._confirmation = None
         return packet
 
@@ -221,10 +227,8 @@ class ConsoleEnd(End[TouchballUp, TouchballDown]):
         self._proven_ns, self._asked = now_ns, None
 
 
-class PlatformEnd(End[TouchballDown, TouchballUp]):
+class AnsweringEnd(End[Outgoing, Incoming]):
     """The end that answers. It keeps no state for a question, and a question changes nothing."""
-
-    _incoming = TouchballUp
 
     def __init__(self, keys: Keys, draw: Draw = secrets.token_bytes) -> None:
         super().__init__(keys, keys.down, keys.up, draw)
@@ -252,3 +256,27 @@ class PlatformEnd(End[TouchballDown, TouchballUp]):
         self._challenge = None  # once only: a replay of this message begins nothing
         self._adopt(message.nonce, message.echo, now_ns)
         return None
+
+
+class ConsoleEnd(AskingEnd[TouchballUp, TouchballDown]):
+    """The console's end of Touchball UDP."""
+
+    _incoming = TouchballDown
+
+
+class PlatformEnd(AnsweringEnd[TouchballDown, TouchballUp]):
+    """The platform's end of Touchball UDP."""
+
+    _incoming = TouchballUp
+
+
+class CsaSlaveEnd(AskingEnd[CsaUp, CsaDown]):
+    """The slave's end of CSA UDP: the console of that protocol."""
+
+    _incoming, _message, _label = CsaDown, CsaHandshake, CSA_LABEL
+
+
+class CsaPlatformEnd(AnsweringEnd[CsaDown, CsaUp]):
+    """The platform's end of CSA UDP."""
+
+    _incoming, _message, _label = CsaUp, CsaHandshake, CSA_LABEL

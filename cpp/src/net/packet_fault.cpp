@@ -1,7 +1,10 @@
 // What a refused packet is told to its user.
+#include "saras/net/packet_fault.hpp"
+
+#include <cstring>
 #include <sstream>
 
-#include "wire.hpp"
+#include "frame.hpp"
 
 namespace saras {
 
@@ -27,7 +30,7 @@ std::string to_string(const PacketFault& fault) {
       hex(fault.lowest);
       break;
     case PacketError::kMagic:
-      hex(fault.value) << ": not this direction of Touchball UDP, expected ";
+      hex(fault.value) << ": another protocol or direction, expected ";
       hex(fault.lowest);
       break;
     case PacketError::kVersion:
@@ -58,6 +61,11 @@ std::string to_string(const PacketFault& fault) {
       break;
   }
   return text.str();
+}
+
+void seal(std::uint8_t* bytes, std::size_t size, const std::uint8_t* tag) noexcept {
+  std::memcpy(bytes + size - kPacketTrailerSize, tag, kPacketTagSize);
+  wire::put(bytes + size - wire::kChecksumSize, crc32(bytes, size - wire::kChecksumSize), 4);
 }
 
 }  // namespace saras

@@ -9,7 +9,8 @@
 #include <cstring>
 #include <limits>
 
-#include "saras/net/touchball_packet.hpp"
+#include "saras/net/packet_fault.hpp"
+#include "saras/spatial/types.hpp"
 
 namespace saras::wire {
 
@@ -92,6 +93,11 @@ class Writer : public Checked {
     check(field, static_cast<double>(value), 0.0, static_cast<double>(highest), -1);
     integer(static_cast<std::uint32_t>(value));
   }
+  /// A u32 within bounds.
+  void count(const char* field, const std::uint32_t& value, std::uint32_t lowest, std::uint32_t highest) noexcept {
+    check(field, value, lowest, highest, -1);
+    integer(value);
+  }
   /// One u32; flag i is bit i.
   template <typename... Flags>
   void flags(const Flags&... flag) noexcept {
@@ -137,6 +143,10 @@ class Reader : public Checked {
     integer(number);
     check(field, number, 0.0, static_cast<double>(highest), -1);
     value = static_cast<Enum>(number);
+  }
+  void count(const char* field, std::uint32_t& value, std::uint32_t lowest, std::uint32_t highest) noexcept {
+    integer(value);
+    check(field, value, lowest, highest, -1);
   }
   template <typename... Flags>
   void flags(Flags&... flag) noexcept {

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 
+#include "saras/net/csa_packet.hpp"
 #include "saras/net/link_age.hpp"
 #include "saras/net/replay_window.hpp"
 #include "saras/net/sequence_filter.hpp"
@@ -45,6 +46,30 @@ TEST(NetAllocation, NothingInTheLoopAllocates) {
   const std::size_t allocations = counter.count();
   EXPECT_EQ(allocations, 0u);
   EXPECT_EQ(refused, 6);  // NaN at two encodes, the same at two decodes, a flipped bit, a short datagram
+}
+
+TEST(NetAllocation, NorDoesTheLinkOfASlaveElsewhere) {
+  if (!test::can_count) {
+    GTEST_SKIP() << "the sanitizer owns malloc";
+  }
+  CsaUp up;
+  CsaDown down;
+  CsaUpBytes up_bytes;
+  CsaDownBytes down_bytes;
+  const std::array<std::uint8_t, kPacketTagSize> tag{};
+  int refused = 0;
+  const test::MallocCounter counter;
+  for (int i = 0; i < 8; ++i) {
+    refused += encode(up, up_bytes) ? 1 : 0;
+    refused += encode(down, down_bytes, Authentication::kTag) ? 1 : 0;
+    seal(down_bytes.data(), down_bytes.size(), tag.data());
+    up_bytes[100] ^= i == 5 ? 1 : 0;
+    refused += decode(up_bytes.data(), up_bytes.size(), up) ? 1 : 0;
+    refused += decode(down_bytes.data(), down_bytes.size(), down, Authentication::kTag) ? 1 : 0;
+  }
+  const std::size_t allocations = counter.count();
+  EXPECT_EQ(allocations, 0u);
+  EXPECT_EQ(refused, 1);
 }
 
 }  // namespace

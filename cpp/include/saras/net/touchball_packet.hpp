@@ -8,8 +8,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <string>
 
+#include "saras/net/packet_fault.hpp"
 #include "saras/spatial/status.hpp"
 #include "saras/spatial/types.hpp"
 
@@ -93,52 +93,15 @@ struct TouchballDown {
   TouchballDownSide right;
 };
 
-/// First message, answer and confirmation of the handshake that begins an authenticated session
-/// (docs/protocols.md). Always authenticated.
-struct TouchballHandshake {
-  std::array<std::uint8_t, 16> nonce{};  ///< drawn by the sender
-  std::array<std::uint8_t, 16> echo{};   ///< the receiver's own nonce, as the sender heard it; 0: none
-};
-
-/// Whether a datagram carries an authentication tag. Which of the two a receiver wants is its configuration:
-/// a datagram's own flag is only compared with it.
-enum class Authentication : std::uint8_t { kNone = 0, kTag = 1 };
+/// First message, answer and confirmation of the handshake that begins an authenticated session.
+struct TouchballHandshake : Handshake {};
 
 inline constexpr std::uint16_t kTouchballVersion = 1;
 inline constexpr std::size_t kTouchballUpSize = 580;
 inline constexpr std::size_t kTouchballDownSize = 260;
-inline constexpr std::size_t kTouchballHandshakeSize = 60;
-inline constexpr std::size_t kTouchballTagSize = 16;
-/// Tag and CRC-32 at the end of a datagram. The tag authenticates all bytes before itself.
-inline constexpr std::size_t kTouchballTrailerSize = kTouchballTagSize + 4;
-
-enum class PacketError : std::uint8_t {
-  kNone = 0,
-  kSize,             ///< not the length of this packet
-  kChecksum,         ///< CRC-32 does not match
-  kMagic,            ///< another protocol or direction
-  kVersion,          ///< another version of this protocol
-  kAuthenticated,    ///< has a tag, and the receiver has no key
-  kUnauthenticated,  ///< has no tag, and the receiver has a key
-  kReserved,         ///< a reserved bit or byte is set
-  kNotFinite,
-  kOutOfRange,
-  kNotUnit,  ///< quaternion norm differs from 1 by more than 1e-6
-};
-
-/// Why a packet was refused. `side` and `field` are static strings; "" when not about a side.
-struct PacketFault {
-  PacketError error = PacketError::kNone;
-  const char* side = "";
-  const char* field = "";
-  int element = -1;    ///< index within the field, -1 for a scalar
-  double value = 0.0;  ///< the refused value
-  double lowest = 0.0, highest = 0.0;
-  explicit operator bool() const noexcept { return error != PacketError::kNone; }
-};
-
-/// "left.grip = 1.5: must be in [0, 1]"
-std::string to_string(const PacketFault& fault);
+inline constexpr std::size_t kTouchballHandshakeSize = kHandshakeSize;
+inline constexpr std::size_t kTouchballTagSize = kPacketTagSize;
+inline constexpr std::size_t kTouchballTrailerSize = kPacketTrailerSize;
 
 using TouchballUpBytes = std::array<std::uint8_t, kTouchballUpSize>;
 using TouchballDownBytes = std::array<std::uint8_t, kTouchballDownSize>;
@@ -151,12 +114,6 @@ PacketFault encode(const TouchballUp& packet, TouchballUpBytes& bytes,
 PacketFault encode(const TouchballDown& packet, TouchballDownBytes& bytes,
                    Authentication authentication = Authentication::kNone) noexcept;
 void encode(const TouchballHandshake& packet, TouchballHandshakeBytes& bytes) noexcept;
-/// Puts tag and CRC-32 at the end of an encoded datagram of `size` bytes, which must be at least the trailer's.
-void seal(std::uint8_t* bytes, std::size_t size, const std::uint8_t* tag) noexcept;
-
-/// What is checked before the tag: length, magic, version and whether there is a tag. Reads no other field.
-template <typename Packet>
-PacketFault check_frame(const std::uint8_t* data, std::size_t size, Authentication authentication) noexcept;
 
 /// Decodes strictly; on a fault `packet` stays as it was. No allocation. The tag is not checked here: with kTag the
 /// caller has compared it with the one of all bytes before it, and this comes after.
