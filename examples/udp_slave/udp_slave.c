@@ -676,7 +676,7 @@ int main(int argc, char** argv) {
   static Arm arm = {.joints = 6};
   uint8_t test_key[32];
   int has_test_key = 0, wants_example = 0;
-  double rate_hz = 200.0, duration_s = 0.0;
+  double rate_hz = 200.0, duration_s = 0.0, timeout_s = 0.1;
   for (int i = 1; i < argc; ++i) {
     const char* option = argv[i];
     if (!strcmp(option, "--example")) {
@@ -692,6 +692,7 @@ int main(int argc, char** argv) {
     else if (!strcmp(option, "--joints")) arm.joints = atoi(value);
     else if (!strcmp(option, "--rate-hz")) rate_hz = atof(value);
     else if (!strcmp(option, "--duration-s")) duration_s = atof(value);
+    else if (!strcmp(option, "--timeout-s")) timeout_s = atof(value);
     else if (!strcmp(option, "--tissue-height-m")) arm.tissue_height = atof(value);
     else if (!strcmp(option, "--tissue-stiffness-N-m")) arm.tissue_stiffness = atof(value);
     else if (!strcmp(option, "--session-key")) has_test_key = from_hex(value, test_key, 32) == 32;
@@ -700,6 +701,7 @@ int main(int argc, char** argv) {
   }
   if (arm.joints != 6 && arm.joints != 7) fail("--joints", "must be 6 or 7");
   if (!(rate_hz >= 10.0 && rate_hz <= 5000.0)) fail("--rate-hz", "must be in 10 ... 5000");
+  if (!(timeout_s >= 0.01 && timeout_s <= 5.0)) fail("--timeout-s", "must be in 0.01 ... 5");
   if (decode_hex) return show(decode_hex, has_test_key ? test_key : NULL);
   if (wants_example) return example(arm.joints, has_test_key ? test_key : NULL);
 
@@ -752,7 +754,7 @@ int main(int argc, char** argv) {
         }
       }
     }
-    if (gate.hold == FOLLOWS && now_ns - gate.heard_ns > 100 * kMs) end_engagement(&gate, NO_SET_POINT);
+    if (gate.hold == FOLLOWS && now_ns - gate.heard_ns > (int64_t)(1e9 * timeout_s)) end_engagement(&gate, NO_SET_POINT);
     if (gate.hold != FOLLOWS) memcpy(arm.goal, arm.q, sizeof arm.q); /* stands where it is */
     move(&arm, dt);
 

@@ -75,17 +75,19 @@ def main() -> int:
     parser.add_argument("--platform", default="127.0.0.1:48030")
     parser.add_argument("--key", type=Path)
     parser.add_argument("--rate-hz", type=float, default=100.0)
+    parser.add_argument("--timeout-s", type=float, default=0.1, help="silence after which it holds")
     parser.add_argument("--tissue-height-m", type=float, default=0.0)
     parser.add_argument("--tissue-stiffness-N-m", dest="stiffness", type=float, default=0.0)
     wanted = parser.parse_args()
     try:
         keys = load(wanted.key) if wanted.key else None
+        gate = SlaveGate(GateConfig(joint_reach=REACH, timeout_s=wanted.timeout_s))
         link = SlaveLink(Address.parse(wanted.listen, "listen"), Address.parse(wanted.platform, "platform"), keys=keys)
     except Error as error:
         print(f"udp_slave: {error}", file=sys.stderr)
         return 2
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    arm, gate = Arm((wanted.tissue_height_m, wanted.stiffness)), SlaveGate(GateConfig(joint_reach=REACH))
+    arm = Arm((wanted.tissue_height_m, wanted.stiffness))
     print(f"6 joints, listens on {link.address}", flush=True)
     dt, due_s, told = 1.0 / wanted.rate_hz, time.monotonic(), gate.hold
     try:

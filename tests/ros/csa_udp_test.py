@@ -28,7 +28,7 @@ from saras_ros1.csa_surgeon import Surgeon
 DOWN = np.array([0.0, 0.0, -0.014])
 FULL = CsaTeleopState.FULL_CONTACT
 SLAVES = ROOT / "examples" / "udp_slave"
-ADDRESSES = ["--listen", "127.0.0.1:48131", "--platform", "127.0.0.1:48130"]
+ADDRESSES = ["--listen", "127.0.0.1:48131", "--platform", "127.0.0.1:48130", "--timeout-s", "1"]
 
 
 class CsaUdp(unittest.TestCase):
