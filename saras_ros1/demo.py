@@ -28,7 +28,8 @@ LAUNCH_FILE = ROOT / "launch" / "saras_mrs.launch"
 START_TIMEOUT_S = 90.0
 LARGEST_HELD_PART = 0.1  #: of the session on HOLD, above which the demo was no success
 REQUIRED_ARGS = {"record", "operator", "bag"}
-OTHERS = {"csa": "saras_ros1.csa_demo"}  #: demos with a command line of their own
+#: demos with a command line of their own
+OTHERS = {"csa": "saras_ros1.csa_demo", "palpation": "saras_ros1.palpation_demo"}
 
 
 class DemoError(RuntimeError):

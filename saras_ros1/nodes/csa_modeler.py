@@ -1,0 +1,317 @@
+"""csa_modeler: learns stiffness and surface from the slave's touch, lays a prior mesh to it, says where to go next.
+
+Subscribes /csa/slave/measured_cp, measured_cv, measured_cf (equal stamps) and /csa/modeler/roi; gives
+/csa/modeler/state, stiffness and mesh (all vertices), touched (those near the tip, faster) and next_location.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import threading
+from pathlib import Path
+from typing import Callable
+
+import numpy as np
+import rospy
+from geometry_msgs.msg import PointStamped, PolygonStamped
+from sensor_msgs.msg import PointCloud2
+from std_srvs.srv import Trigger, TriggerResponse
+from visualization_msgs.msg import Marker
+
+from saras import ConfigError, Error, ModelError
+from saras.model import StiffMesh, StiffnessGpConfig
+from saras.model.live import Bending, LiveMap, Snapshot
+from saras.model.region import Region
+from saras_ros1 import modeler_messages as messages
+from saras_ros1.csa_node import CsaNode, vector
+from saras_ros1.modeler_explorer import Explorer
+from saras_ros1.modeler_prior import prior_mesh, refuse_elsewhere
+from saras_ros1.modeler_samples import Samples
+from saras_ros1.modeler_status import SampleStatus
+from saras_ros1.msg import CsaModelerState
+from saras_ros1.node import run
+from saras_ros1.params import Params
+from saras_ros1.srv import KeepModel, KeepModelResponse, SetRegion, SetRegionResponse
+
+HYPER_GROWTH = 1.3  #: places since the last time, above which hyper-parameters are learned again
+
+
+class CsaModeler(CsaNode):
+    """Learning, the whole map, bending and planning each have a thread; what they compute is C++ without the GIL."""
+
+    def __init__(self) -> None:
+        os.nice(5)  # when the processor is short, control goes before maps
+        super().__init__("csa_modeler")
+        p = self.params
+        config = p.build(StiffnessGpConfig, "law")
+        prior = p.section("prior")
+        mesh = prior_mesh(self.setup, prior.number("half_width_m", 2e-3, 0.5), prior.integer("vertices", 9, 200_000))
+        self.live = LiveMap(mesh, config, _bending(p.section("bending")), free_m=p.number("free_m", 0.0, 0.1))
+        self.samples = Samples(
+            self, p.text("source"), self.frame, p.number("stale_s", 0.05, 10.0), p.integer("room", 10, 100_000)
+        )
+        self.said = SampleStatus(config)
+        self.radius_m = p.number("touched_radius_m", 1e-4, 0.05)
+        colours = p.section("colours")
+        self.colours = tuple(colours.number(n, 1e-3, 1e6) for n in ("low_N_m", "high_N_m", "faded_std_N_m"))
+        if self.colours[0] >= self.colours[1]:
+            raise ConfigError(f"{self.name}/colours/low_N_m = {self.colours[0]:g}: must be below high_N_m")
+        self._exploring(p.section("exploring"))
+        self.known: Snapshot | None = None
+        self.bent_rms_m, self.learned_places = math.nan, 0
+        self.fault, self.status = "", "STALE: nothing yet"
+        self.region: Region | None = None
+        self.keeping = threading.Lock()
+        self._set_region(np.zeros((0, 3)))
+        self._outputs()
+        rates = p.section("rates")
+        self.idle: list[threading.Lock] = []
+        for name, callback in (
+            ("touched_hz", self._learn),
+            ("map_hz", self._show_all),
+            ("bend_hz", self._bend),
+            ("plan_hz", self._plan),
+            ("hyperparameters_hz", self._hyperparameters),
+            ("state_hz", self._tell),
+        ):
+            self._work(1.0 / rates.number(name, 1e-3, 200.0), callback)
+
+    def _work(self, period_s: float, callback: Callable[[], None]) -> None:
+        idle = threading.Lock()
+        self.idle.append(idle)
+
+        def work() -> None:
+            with idle:
+                callback()
+
+        self.every(period_s, work)
+
+    def run(self) -> None:
+        """Ends only when no thread computes: the interpreter must not go away under one."""
+        super().run()
+        for idle in self.idle:
+            idle.acquire(timeout=5.0)
+
+    def _exploring(self, p: Params) -> None:
+        options = {
+            "cost": p.text("cost"),
+            "corners": p.integer("corners", 1, 10),
+            "step_m": p.number("step_m", 1e-3, 0.2),
+            "spacing_m": p.number("spacing_m", 1e-4, 0.1),
+            "time_limit_s": p.number("time_limit_s", 1e-3, 60.0),
+            "seed": p.integer("seed", 1, 2**31),
+        }
+        self.cost = options["cost"]
+        self.border_m = p.number("border_m", 0.0, 0.1)
+        self.explorer = Explorer(self.live, p.number("reach_m", 1e-4, 0.05), p.number("timeout_s", 0.1, 600.0), options)
+        # Refuses an unknown cost now, not when the first path is drawn.
+        from saras.model.exploring import find_cost
+
+        find_cost(self.cost)
+
+    def _outputs(self) -> None:
+        self.state_out = self.output("/csa/modeler/state", CsaModelerState)
+        self.cloud_out = self.output("/csa/modeler/stiffness", PointCloud2)
+        self.touched_out = self.output("/csa/modeler/touched", PointCloud2)
+        self.mesh_out = self.output("/csa/modeler/mesh", Marker)
+        self.next_out = self.output("/csa/modeler/next_location", PointStamped)
+        rospy.Subscriber("/csa/modeler/roi", PolygonStamped, self._on_region, queue_size=5)
+        rospy.Service("/csa/modeler/set_region", SetRegion, self._on_set_region)
+        rospy.Service("/csa/modeler/reset", Trigger, self._on_reset)
+        rospy.Service("/csa/modeler/save", KeepModel, self._on_save)
+        rospy.Service("/csa/modeler/load", KeepModel, self._on_load)
+
+    # ---- threads
+
+    def _learn(self) -> None:
+        batch = self.samples.take()
+        if batch is None:
+            return
+        self.said.count(self.live.learn(batch.positions, batch.forces, batch.velocities, batch.dt))
+        tips = batch.positions[-1:] if len(batch.positions) < 3 else batch.positions[[0, -1]]
+        indices = self.live.refresh_near(tips, self.radius_m)
+        laid = self.live.laid
+        if len(indices) and indices[-1] < len(laid.vertices):
+            known = laid.stiffness_N_m[indices], laid.stiffness_std_N_m[indices]
+            now = rospy.Time.now()
+            self.touched_out.publish(messages.cloud(self.frame, now, laid.vertices[indices], *known, indices))
+
+    def _show_all(self) -> None:
+        self.known = self.live.snapshot()
+        laid = self.live.refresh(self.known)
+        now, known = rospy.Time.now(), (laid.stiffness_N_m, laid.stiffness_std_N_m)
+        self.cloud_out.publish(messages.cloud(self.frame, now, laid.vertices, *known))
+        painted = messages.colours(*known, *self.colours)
+        self.mesh_out.publish(messages.mesh_marker(self.frame, now, laid.vertices, laid.mesh.triangles, painted))
+
+    def _bend(self) -> None:
+        known = self.known
+        if known is None or not len(known.grid):
+            return
+        try:
+            rms_m = self.live.bend(known)
+        except ModelError as error:
+            self.fault = f"NOT_LAID: {error}"
+            return
+        self.fault = ""
+        if rms_m is not None:
+            self.bent_rms_m = rms_m
+
+    def _plan(self) -> None:
+        if not self.samples.tip.fresh:
+            return
+        there = self.explorer.next(self.region, self.known, self.samples.tip.value[:3, 3])
+        if there is None:
+            return
+        message = PointStamped()
+        message.header.stamp, message.header.frame_id = rospy.Time.now(), self.frame
+        vector(message.point, there)
+        self.next_out.publish(message)
+
+    def _hyperparameters(self) -> None:
+        places = self.live.places
+        if places < HYPER_GROWTH * self.learned_places or places < 100:
+            return
+        try:
+            self.live.learn_hyperparameters()
+        except (ModelError, ImportError) as error:
+            rospy.logwarn_throttle(60.0, f"{self.name}: hyper-parameters stay as they are: {error}")
+        self.learned_places = places
+
+    def _tell(self) -> None:
+        bias, disagreement = self.live.sensor()
+        well, status = self.said.text(self.samples.missing(), float(np.linalg.norm(bias)), disagreement)
+        if well and self.fault:
+            well, status = False, self.fault
+        self.status = status
+        laid = self.live.laid
+        message = CsaModelerState(status=status, well=well, samples=self.samples.heard, places=self.live.places)
+        message.header.stamp, message.header.frame_id = rospy.Time.now(), self.frame
+        message.learned, message.refused = self.said.learned, self.said.refused
+        message.known_share = float(np.isfinite(laid.stiffness_N_m).mean())
+        message.disagreement, message.bent_rms_m = disagreement, self.bent_rms_m
+        vector(message.bias_N, bias)
+        message.region, message.cost, message.cost_error = self.region is not None, self.cost, self.explorer.error
+        self._tell_stiffest(message, laid)
+        self.state_out.publish(message)
+        if not well:
+            rospy.logwarn_throttle(5.0, f"{self.name}: {status}")
+
+    def _tell_stiffest(self, message: CsaModelerState, laid) -> None:
+        """Of the vertices in the region, the one whose stiffness less a deviation is greatest."""
+        surely = np.where(np.isfinite(laid.stiffness_N_m), laid.stiffness_N_m - laid.stiffness_std_N_m, -np.inf)
+        region = self.region
+        if region is not None:
+            surely = np.where(region.contains(laid.vertices, 1e-3), surely, -np.inf)
+        best = int(surely.argmax())
+        message.stiffest_N_m = message.stiffest_std_N_m = math.nan
+        vector(message.stiffest, np.full(3, np.nan))
+        if np.isfinite(surely[best]):
+            vector(message.stiffest, laid.vertices[best])
+            message.stiffest_N_m = float(laid.stiffness_N_m[best])
+            message.stiffest_std_N_m = float(laid.stiffness_std_N_m[best])
+
+    # ---- what is asked for
+
+    def _on_region(self, message: PolygonStamped) -> None:
+        try:
+            self._set_region(self._corners(message))
+        except ConfigError as error:
+            rospy.logerr(f"{self.name}: region refused: {error}")
+
+    def _on_set_region(self, request) -> SetRegionResponse:
+        try:
+            self._set_region(self._corners(request.region))
+        except ConfigError as error:
+            return SetRegionResponse(False, str(error))
+        return SetRegionResponse(True, f"{len(request.region.polygon.points)} points")
+
+    def _corners(self, message: PolygonStamped) -> np.ndarray:
+        points = np.array([(p.x, p.y, p.z) for p in message.polygon.points], dtype=float).reshape(-1, 3)
+        if len(points) and message.header.frame_id.lstrip("/") != self.frame:
+            raise ConfigError(f"frame_id '{message.header.frame_id}', must be '{self.frame}'")
+        return points
+
+    def _set_region(self, corners: np.ndarray) -> None:
+        """No corners: the whole of an open mesh but its border; nothing of a closed one, which has no flat chart."""
+        mesh = self.live.laid.mesh
+        if len(corners):
+            self.region = Region(corners, mesh)
+            return
+        if mesh.closed:
+            self.region = None
+            return
+        middle = mesh.vertices.mean(0)
+        away = mesh.vertices - middle
+        length = np.linalg.norm(away, axis=1, keepdims=True)
+        self.region = Region(middle + away * np.maximum(0.0, 1.0 - self.border_m / np.maximum(length, 1e-9)), mesh)
+
+    def _on_reset(self, _) -> TriggerResponse:
+        with self.keeping:
+            self.live.reset()
+            self._forgotten()
+        return TriggerResponse(True, "nothing is known")
+
+    def _forgotten(self) -> None:
+        self.said.reset()
+        self.samples.heard = 0
+        self.bent_rms_m, self.learned_places, self.known = math.nan, 0, None
+
+    def _on_save(self, request) -> KeepModelResponse:
+        path = Path(request.path)
+        try:
+            if not path.is_absolute():
+                raise ConfigError(f"path = {request.path!r}: must be absolute")
+            if path.exists() and not request.force:
+                raise ConfigError(f"{path}: is there already: force overwrites it")
+            with self.keeping:
+                kept = self.live.stiff_mesh()
+                partial = path.with_name(f".{path.name}.part")
+                kept.save(partial)
+                partial.replace(path)
+        except (Error, OSError, ImportError) as error:
+            return KeepModelResponse(False, str(error))
+        known = int(np.isfinite(kept.stiffness_N_m).sum())
+        return KeepModelResponse(True, f"{path}: {len(kept.vertices)} vertices, {known} of them known")
+
+    def _on_load(self, request) -> KeepModelResponse:
+        try:
+            kept = StiffMesh.load(request.path)
+            refuse_elsewhere(kept, self.live.laid.mesh)
+            with self.keeping:
+                self.live.take(kept)
+                self._forgotten()
+        except (Error, OSError, ImportError) as error:
+            return KeepModelResponse(False, str(error))
+        known = int(np.isfinite(kept.stiffness_N_m).sum())
+        return KeepModelResponse(True, f"{request.path}: {len(kept.vertices)} vertices, {known} of them known")
+
+    def report(self) -> dict:
+        """What became of the samples."""
+        counts = {f"samples {name}": number for name, number in sorted(self.said.total.items())}
+        return {
+            "samples": self.status,
+            **counts,
+            "waiting_dropped": self.samples.dropped,
+            "places": self.live.places,
+            "plans": self.explorer.plans,
+            "cost": self.explorer.error or self.cost,
+        }
+
+
+def _bending(p: Params) -> Bending:
+    return Bending(
+        spacing_m=p.number("spacing_m", 1e-3, 0.5),
+        strain=p.number("strain", 1e-4, 10.0),
+        travel_m=p.number("travel_m", 1e-5, 1.0),
+        slide_m=p.number("slide_m", 1e-6, 0.1),
+        points=p.integer("points", 10, 10_000),
+        min_points=p.integer("min_points", 3, 10_000),
+        surface_std_m=p.number("surface_std_m", 1e-6, 0.1),
+    )
+
+
+def main() -> int:
+    """Runs the node."""
+    return run(CsaModeler)

@@ -1,0 +1,156 @@
+"""The live map: learned, bent, refreshed, kept; and regions on a mesh."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.spatial import ConvexHull
+
+from saras import ConfigError
+from saras.model import Mesh
+from saras.model.live import LiveMap, refine
+from saras.model.region import Region
+from saras.sim import TissueConfig
+from saras.sim.palpation import Phantom, palpate, raster_path
+
+COUNT = 9
+
+
+def grid_triangles(count: int) -> np.ndarray:
+    corner = [i * count + j for i in range(count - 1) for j in range(count - 1)]
+    parts = [((a, a + count, a + count + 1), (a, a + count + 1, a + 1)) for a in corner]
+    return np.array(parts, dtype=np.int32).reshape(-1, 3)
+
+
+def bent_prior() -> Mesh:
+    side = np.linspace(-0.024, 0.024, COUNT)
+    x, y = (axis.reshape(-1) for axis in np.meshgrid(side, side, indexing="ij"))
+    return Mesh(np.column_stack([x, y, 0.0015 + 0.0015 * np.sin(60.0 * x) + 0.02 * y]), grid_triangles(COUNT))
+
+
+@pytest.fixture(scope="module")
+def phantom() -> Phantom:
+    return Phantom(TissueConfig(base_T_surface=np.eye(4), inclusion_x_m=0.006, inclusion_y_m=-0.004))
+
+
+@pytest.fixture(scope="module")
+def recorded(phantom):
+    return palpate(phantom, raster_path(0.03, 3e-3, 0.01, 0.01), 0.01)
+
+
+def learned(recorded) -> LiveMap:
+    live = LiveMap(refine(bent_prior(), 2000))
+    for i in range(0, len(recorded), 50):
+        part = slice(i, i + 50)
+        live.learn(recorded.positions[part], recorded.forces[part], recorded.velocities[part], 0.01)
+    return live
+
+
+def test_the_mesh_is_laid_to_what_was_touched_and_the_untouched_stays_unknown(phantom, recorded) -> None:
+    live = learned(recorded)
+    before = live.laid.vertices
+    for _ in range(3):
+        assert live.bend(live.snapshot()) < 5e-4
+    laid = live.refresh(live.snapshot())
+    inside = (np.abs(laid.vertices[:, :2]) < 0.013).all(1)
+    assert np.sqrt((phantom.depth(laid.vertices[inside]) ** 2).mean()) < 3e-4
+    assert np.sqrt((phantom.depth(before[inside]) ** 2).mean()) > 1e-3
+    known = np.isfinite(laid.stiffness_N_m)
+    assert known[inside].all()
+    assert (np.isfinite(laid.stiffness_std_N_m) == known).all()
+    path = recorded.positions
+    away = np.array([((path - v) ** 2).sum(1).min() ** 0.5 for v in laid.vertices])
+    assert not known[away > live.config.local.radius_m].any()
+
+
+def test_what_is_near_the_tip_is_what_the_whole_map_says_there(recorded) -> None:
+    live = learned(recorded)
+    live.bend(live.snapshot())
+    near = live.refresh_near(recorded.positions[-1:], 0.006)
+    part = live.laid
+    whole = live.refresh(live.snapshot())
+    assert len(near)
+    np.testing.assert_array_equal(part.stiffness_N_m[near], whole.stiffness_N_m[near])
+    untouched = np.setdiff1d(np.arange(len(part.vertices)), near)
+    assert np.isnan(part.stiffness_N_m[untouched]).all()
+
+
+def test_what_was_asked_before_a_reset_does_not_come_back(recorded) -> None:
+    live = learned(recorded)
+    old = live.snapshot()
+    live.refresh(old)
+    live.reset()
+    live.refresh(old)
+    assert live.bend(old) is None
+    assert np.isnan(live.laid.stiffness_N_m).all()
+    assert live.places == 0
+
+
+def test_a_kept_map_is_shown_until_it_is_touched(tmp_path, recorded) -> None:
+    live = learned(recorded)
+    live.bend(live.snapshot())
+    live.refresh(live.snapshot())
+    kept = live.stiff_mesh()
+    other = LiveMap(bent_prior())
+    other.take(kept)
+    np.testing.assert_array_equal(other.laid.stiffness_N_m, kept.stiffness_N_m)
+    other.refresh(other.snapshot())
+    np.testing.assert_array_equal(other.laid.stiffness_N_m, kept.stiffness_N_m)
+    other.reset()
+    np.testing.assert_array_equal(other.laid.vertices, kept.vertices)
+    assert np.isnan(other.laid.stiffness_N_m).all()
+
+
+def test_the_offset_in_free_air_is_taken_and_a_drift_named() -> None:
+    live = LiveMap(bent_prior())
+    at, rest = np.tile([0.0, 0.0, 0.03], (300, 1)), np.zeros((300, 3))
+    assert set(live.learn(at, rest + np.array([0.0, 0.0, 0.2]), rest, 0.01)) == {"NOT_TOUCHING"}
+    np.testing.assert_allclose(live.sensor()[0], [0.0, 0.0, 0.2], atol=1e-2)
+    assert "SENSOR_DRIFT" in live.learn(at, rest + np.array([0.0, 0.0, 3.0]), rest, 0.01)
+
+
+def test_refining_keeps_the_surface() -> None:
+    coarse = bent_prior()
+    fine = refine(coarse, 3000)
+    assert len(coarse.vertices) < len(fine.vertices) <= 3000
+    np.testing.assert_array_equal(fine.vertices[: len(coarse.vertices)], coarse.vertices)
+    assert coarse.closest(fine.vertices)[3].max() < 1e-18
+    assert refine(coarse, 1).triangles.shape == coarse.triangles.shape
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_region_is_the_hull_of_its_corners(seed) -> None:
+    rng = np.random.default_rng(seed)
+    mesh = bent_prior()
+    corners = np.column_stack([rng.uniform(-0.012, 0.012, (8, 2)), np.zeros(8)])
+    region = Region(corners, mesh)
+    assert region.normal[2] > 0.9
+    hull = ConvexHull(corners[:, :2])
+    points = np.column_stack([rng.uniform(-0.015, 0.015, (200, 2)), np.zeros(200)])
+    beyond = (points[:, :2] @ hull.equations[:, :2].T + hull.equations[:, 2]).max(1)
+    clear = np.abs(beyond) > 1e-9
+    np.testing.assert_array_equal(region.contains(points)[clear], (beyond < 0.0)[clear])
+    surface = region.surface(region.chart(points))
+    assert region.contains(surface, 3e-4).all()
+    assert mesh.closest(surface)[3].max() < 1e-16
+    moved = region.inside(region.chart(points))
+    dense = np.concatenate(
+        [
+            a + t * (b - a)
+            for t in np.linspace(0, 1, 400)[:, None, None]
+            for a, b in [(region.corners, np.roll(region.corners, -1, axis=0))]
+        ]
+    )
+    for point, to in zip(region.chart(points)[beyond > 1e-9], moved[beyond > 1e-9]):
+        assert np.linalg.norm(point - to) <= np.linalg.norm(dense - point, axis=1).min() + 1e-12
+
+
+def test_no_regions() -> None:
+    mesh = bent_prior()
+    for corners, word in (
+        ([[0.0, 0.0, 0.0]] * 2, "n at least 3"),
+        ([[0.0, 0.0, 0.0], [0.01, 0.0, 0.0], [0.02, 0.0, 0.0]], "must span an area"),
+        ([[0.0, 0.0, np.nan], [0.01, 0.0, 0.0], [0.0, 0.01, 0.0]], "must be finite"),
+    ):
+        with pytest.raises(ConfigError, match=word):
+            Region(corners, mesh)
