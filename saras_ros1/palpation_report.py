@@ -136,7 +136,8 @@ def panel(title: str, values: np.ndarray, low: float, high: float, marks: list[t
         return TOP + PIXELS * (1.0 - share) if up else LEFT + PIXELS * share
 
     parts = [
-        f'<svg viewBox="0 0 {LEFT + PIXELS + 62} {TOP + PIXELS + 22}" width="370" font-size="11" fill="currentColor">'
+        f'<svg viewBox="0 0 {LEFT + PIXELS + 62} {TOP + PIXELS + 22}" style="width:365px" font-size="11" '
+        'fill="currentColor">'
     ]
     parts.append(f'<text x="{LEFT}" y="13" font-weight="bold">{escape(title)}</text>')
     for index, value in enumerate(values):
@@ -160,7 +161,7 @@ def panel(title: str, values: np.ndarray, low: float, high: float, marks: list[t
         parts.append(f'<rect x="{bar}" y="{y:.1f}" width="12" height="{PIXELS / 50 + 0.3:.1f}" fill="{fill}"/>')
     for share in (0.0, 0.5, 1.0):
         parts.append(
-            f'<text x="{bar + 16}" y="{TOP + PIXELS * (1.0 - share) + 4:.0f}">{low + (high - low) * share:.3g}</text>'
+            f'<text x="{bar + 16}" y="{TOP + PIXELS * (1.0 - share) + 4:.0f}">{low + (high - low) * share:.0f}</text>'
         )
     return "".join(parts) + "</svg>"
 
