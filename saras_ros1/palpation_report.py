@@ -16,6 +16,7 @@ from saras_ros1.palpation_truth import LOOKED_AT_M, Errors, Truth
 CELLS, PIXELS = 40, 300
 LEFT, TOP = 34, 22
 FOUND_M = 0.002
+AXIS = "palpated for [s]"  # named time, a line would break at silences of 0.3 s
 NOTE = (
     '<p class="note">x and y in mm; grey: not known. '
     "Circle: the inclusion; cross: where the map is surely stiffest.</p>"
@@ -91,13 +92,13 @@ def surfaces(truth: Truth, rows: Any, begun_with: Any) -> str:
 def charts(series: list[Errors]) -> str:
     """Errors, coverage and how much is known."""
     t = [row.t_s for row in series]
-    off = Chart("inclusion, distance to the stiffest place [mm]", width=1150, height=150, y_include=(0.0,))
+    off = Chart("inclusion, distance to the stiffest place [mm]", AXIS, width=1150, height=150, y_include=(0.0,))
     off.line(t, [1e3 * row.inclusion_m for row in series], "distance", "measured").level(1e3 * FOUND_M, "found")
-    stiffness = Chart("stiffness, RMS error where known [N/m]", width=1150, height=130, y_include=(0.0,))
+    stiffness = Chart("stiffness, RMS error where known [N/m]", AXIS, width=1150, height=130, y_include=(0.0,))
     stiffness.line(t, [row.stiffness_N_m for row in series], "error", "extra")
-    surface = Chart("surface, RMS error [mm]", width=1150, height=130, y_include=(0.0,))
+    surface = Chart("surface, RMS error [mm]", AXIS, width=1150, height=130, y_include=(0.0,))
     surface.line(t, [1e3 * row.surface_m for row in series], "error", "master")
-    share = Chart("share [%]", width=1150, height=150, y_range=(0.0, 100.0))
+    share = Chart("share [%]", AXIS, width=1150, height=150, y_range=(0.0, 100.0))
     share.line(t, [100.0 * row.known for row in series], "of the square that is known", "truth")
     share.line(t, [100.0 * row.within_1 for row in series], "of stiffnesses within 1 σ", "command", True)
     share.line(t, [100.0 * row.within_2 for row in series], "within 2 σ", "measured", True)
@@ -136,8 +137,8 @@ def panel(title: str, values: np.ndarray, low: float, high: float, marks: list[t
         return TOP + PIXELS * (1.0 - share) if up else LEFT + PIXELS * share
 
     parts = [
-        f'<svg viewBox="0 0 {LEFT + PIXELS + 62} {TOP + PIXELS + 22}" style="width:365px" font-size="11" '
-        'fill="currentColor">'
+        f'<svg viewBox="0 0 {LEFT + PIXELS + 62} {TOP + PIXELS + 22}" style="width:365px" '
+        'shape-rendering="crispEdges" font-size="11" fill="currentColor">'
     ]
     parts.append(f'<text x="{LEFT}" y="13" font-weight="bold">{escape(title)}</text>')
     for index, value in enumerate(values):
