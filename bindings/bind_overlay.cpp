@@ -123,6 +123,7 @@ void bind_overlay(py::module_& m) {
   bind_overlay_watch(m);
   bind_overlay_tools(m);
   bind_overlay_inset(m);
+  bind_overlay_stiffness(m);
 }
 
 }  // namespace saras::bindings

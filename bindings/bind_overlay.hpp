@@ -18,5 +18,6 @@ void bind_overlay_camera(py::module_& m);
 void bind_overlay_watch(py::module_& m);
 void bind_overlay_tools(py::module_& m);
 void bind_overlay_inset(py::module_& m);
+void bind_overlay_stiffness(py::module_& m);
 
 }  // namespace saras::bindings

@@ -14,6 +14,7 @@ add_library(saras_visual_feedback SHARED
   saras_ros1/nodelet/overlay_messages.cpp
   saras_ros1/nodelet/overlay_sources.cpp
   saras_ros1/nodelet/parameters.cpp
+  saras_ros1/nodelet/stiffness_source.cpp
   saras_ros1/nodelet/visual_feedback.cpp)
 target_link_libraries(saras_visual_feedback PRIVATE saras::core saras_compiler_options)
 add_executable(saras_visual_feedback_node saras_ros1/nodelet/visual_feedback_main.cpp)

@@ -79,32 +79,38 @@ void OverlaySources::fill(const std_msgs::Header& left_image, const Eigen::Matri
   fill_tools(config_.tools, newest, places, heard.distances, input);
   input.tools_age_s = age(heard.state_at, newest == nullptr ? ros::Time() : newest->header.stamp);
   input.distances_age_s = age(heard.distances_at, ros::Time());
-  look_up_camera(left_image, rectified_R_raw, input);
+  input.camera_age_s = look_up(kWorld, left_image, rectified_R_raw, input.camera_T_world);
 }
 
-void OverlaySources::look_up_camera(const std_msgs::Header& image, const Eigen::Matrix3d& rectified_R_raw,
-                                    saras::ToolOverlayInput& input) {
+bool OverlaySources::left_T(const std::string& frame, const std_msgs::Header& left_image,
+                            const Eigen::Matrix3d& rectified_R_raw, double within_s, saras::Pose& pose) const {
+  return look_up(frame, left_image, rectified_R_raw, pose) <= within_s;
+}
+
+double OverlaySources::look_up(const std::string& of, const std_msgs::Header& image,
+                               const Eigen::Matrix3d& rectified_R_raw, saras::Pose& pose) const {
   const std::string& frame = config_.optical_frame.empty() ? image.frame_id : config_.optical_frame;
-  input.camera_age_s = std::numeric_limits<double>::infinity();
+  constexpr double kUnknown_s = std::numeric_limits<double>::infinity();
+  double apart_s = 0.0;  // known for the time of the image
   geometry_msgs::TransformStamped found;
   try {
-    found = buffer_.lookupTransform(frame, kWorld, image.stamp);
-    input.camera_age_s = 0.0;  // known for the time of the image
+    found = buffer_.lookupTransform(frame, of, image.stamp);
   } catch (const tf2::ExtrapolationException&) {
     try {
-      found = buffer_.lookupTransform(frame, kWorld, ros::Time(0));
-      input.camera_age_s = std::abs((image.stamp - found.header.stamp).toSec());
+      found = buffer_.lookupTransform(frame, of, ros::Time(0));
+      apart_s = std::abs((image.stamp - found.header.stamp).toSec());
     } catch (const tf2::TransformException&) {
-      return;
+      return kUnknown_s;
     }
   } catch (const tf2::TransformException&) {
-    return;
+    return kUnknown_s;
   }
-  input.camera_T_world = pose_of(found.transform);
+  pose = pose_of(found.transform);
   if (config_.frame_is_raw) {
     const saras::Pose rectified_T_raw{saras::Quaternion(rectified_R_raw).normalized(), saras::Vector3::Zero()};
-    input.camera_T_world = rectified_T_raw * input.camera_T_world;
+    pose = rectified_T_raw * pose;
   }
+  return apart_s;
 }
 
 }  // namespace saras_ros1

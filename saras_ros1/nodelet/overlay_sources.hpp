@@ -26,6 +26,10 @@ class OverlaySources {
   OverlaySources(ros::NodeHandle& handle, OverlaySourcesConfig config);
   /// Tools, ages and the camera's pose for an image. rectified_R_raw: of the left eye.
   void fill(const std_msgs::Header& left_image, const Eigen::Matrix3d& rectified_R_raw, saras::ToolOverlayInput& input);
+  /// The pose of another frame in the rectified left optical frame at the image's time; false: tf does not know it, or
+  /// only for a time further away than within_s.
+  bool left_T(const std::string& frame, const std_msgs::Header& left_image, const Eigen::Matrix3d& rectified_R_raw,
+              double within_s, saras::Pose& pose) const;
 
  private:
   struct Heard {
@@ -37,8 +41,9 @@ class OverlaySources {
 
   void on_state(const CollisionState::ConstPtr& message);
   void on_distances(const std_msgs::Float64MultiArray::ConstPtr& message);
-  void look_up_camera(const std_msgs::Header& image, const Eigen::Matrix3d& rectified_R_raw,
-                      saras::ToolOverlayInput& input);
+  /// How far from the image's time the pose is [s]; infinite: not known, and pose as it was.
+  double look_up(const std::string& frame, const std_msgs::Header& image, const Eigen::Matrix3d& rectified_R_raw,
+                 saras::Pose& pose) const;
 
   OverlaySourcesConfig config_;
   saras::Snapshot<Heard> heard_;

@@ -51,6 +51,7 @@ void VisualFeedback::read_parameters() {
   law.distances_timeout_s = own.number("distances_timeout_s", 0.02, 0.15);
   law.tools_timeout_s = own.number("tools_timeout_s", 0.02, 0.15);
   law.camera_timeout_s = own.number("camera_timeout_s", 0.02, 1.0);
+  map_pose_within_s_ = law.camera_timeout_s;
   sources_config_.places_within_s = law.tools_timeout_s;
   const saras::FrozenWatchConfig frozen{own.number("frozen_after_s", 0.02, 0.2)};
   saras::StereoPairingConfig pairing;
@@ -67,6 +68,14 @@ void VisualFeedback::read_parameters() {
   inset_style_.width = own.number("inset/width", 0.1, 0.5);
   inset_style_.span_m = own.number("inset/span_m", 0.001, 1.0);
   inset_style_.arrow_m_per_N = own.number("inset/arrow_m_per_N", 1e-4, 1.0);
+  map_wanted_ = own.flag("stiffness_map");
+  map_timeout_s_ = own.number("stiffness/timeout_s", 0.1, 60.0);
+  stiffness_style_.low_N_m = own.number("stiffness/low_N_m", 0.0, 1e6);
+  stiffness_style_.high_N_m = own.number("stiffness/high_N_m", 0.0, 1e6);
+  stiffness_style_.opacity = own.number("stiffness/opacity", 0.05, 1.0);
+  stiffness_style_.uncertain_std_N_m = own.number("stiffness/uncertain_std_N_m", 1.0, 1e6);
+  stiffness_style_.faint_opacity = own.number("stiffness/faint_opacity", 0.0, 1.0);
+  stiffness_style_.validate();
   own.text("image_transport");  // read by image_transport itself
   own.finish();
   style_.validate();
@@ -87,6 +96,9 @@ void VisualFeedback::start() {
   sources_ = std::make_unique<OverlaySources>(getMTNodeHandle(), sources_config_);
   if (inset_wanted_) {
     awareness_ = std::make_unique<AwarenessSource>(getMTNodeHandle());
+  }
+  if (map_wanted_) {
+    stiffness_ = std::make_unique<StiffnessSource>(getMTNodeHandle(), map_timeout_s_);
   }
   ros::NodeHandle& handle = getNodeHandle();
   image_transport::ImageTransport transport(handle);
@@ -116,11 +128,15 @@ void VisualFeedback::on_info(std::size_t i, const sensor_msgs::CameraInfoConstPt
   eye.info = *info;
   eye.painter.reset();
   eye.inset.reset();
+  eye.stiffness.reset();
   try {
     const saras::CameraConfig camera = camera_config(*info, rectified_, near_m_);
     eye.painter.emplace(camera, style_);
     if (inset_wanted_) {
       eye.inset.emplace(camera.width_px, camera.height_px, inset_style_);
+    }
+    if (map_wanted_) {
+      eye.stiffness = std::make_unique<saras::StiffnessOverlay>(camera, stiffness_style_);
     }
     eye.rectified_R_raw = camera.R;
     eye.why_no_painter.clear();
@@ -188,6 +204,7 @@ void VisualFeedback::release_alone(std::size_t i, const sensor_msgs::ImageConstP
 void VisualFeedback::release_pair(const std::array<sensor_msgs::ImageConstPtr, 2>& images) {
   saras::ToolOverlayInput input;
   sources_->fill(images[0]->header, eyes_[0].rectified_R_raw, input);
+  look_at_map(images[0]->header);
   const double dt = seconds_since(drawn_at_);
   drawn_at_ = ros::SteadyTime::now();
   const saras::ToolOverlayOutput tools = law_->step(input, std::max(dt, 1e-9));
@@ -224,6 +241,7 @@ void VisualFeedback::publish(std::size_t i, const sensor_msgs::ImageConstPtr& im
       notice = saras::OverlayNotice::kSizeDiffers;
     } else {
       if (watched) {
+        draw_map(eye, view);  // under the tools
         eye.painter->draw(*tools, view);
         draw_inset(eye, view);
       }
@@ -239,6 +257,35 @@ void VisualFeedback::publish(std::size_t i, const sensor_msgs::ImageConstPtr& im
     eye.out.publish(copy);
   }
   eye.draw_s += seconds_since(begin);
+}
+
+void VisualFeedback::look_at_map(const std_msgs::Header& left_image) {
+  map_.reset();
+  if (!stiffness_) {
+    return;
+  }
+  map_ = stiffness_->map(map_why_not_);
+  if (map_ && !sources_->left_T(map_->frame, left_image, eyes_[0].rectified_R_raw, map_pose_within_s_, left_T_map_)) {
+    map_why_not_ = "stiffness map: tf does not know its frame " + map_->frame;
+    map_.reset();
+  }
+}
+
+void VisualFeedback::draw_map(Eye& eye, const saras::ImageView& image) {
+  if (!eye.stiffness) {
+    return;
+  }
+  if (!map_) {
+    eye.stiffness->draw_unknown(image);
+    return;
+  }
+  saras::StiffnessMapView view;
+  view.vertices = map_->vertices.data();
+  view.vertex_count = static_cast<int>(map_->vertices.size());
+  view.triangles = map_->triangles.data();
+  view.triangle_count = static_cast<int>(map_->triangles.size());
+  view.left_T_map = left_T_map_;
+  eye.stiffness->draw(view, image);
 }
 
 void VisualFeedback::draw_inset(const Eye& eye, const saras::ImageView& image) {
@@ -295,6 +342,13 @@ void VisualFeedback::report(const ros::SteadyTimerEvent&) {
     add(name + "age_worst_ms", std::to_string(eye.ages.worst_ms()));
     const double published = static_cast<double>(eye.drawn + eye.alone);
     add(name + "copy_and_draw_mean_us", std::to_string(published > 0 ? 1e6 * eye.draw_s / published : 0.0));
+  }
+  if (stiffness_) {
+    add("stiffness_map", map_ ? "drawn" : map_why_not_);
+    if (!map_) {
+      status.level = diagnostic_msgs::DiagnosticStatus::WARN;
+      status.message += status.message == "RUNNING" ? ": " + map_why_not_ : "; " + map_why_not_;
+    }
   }
   array.status.push_back(status);
   diagnostics_.publish(array);

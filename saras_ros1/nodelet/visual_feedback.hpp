@@ -14,6 +14,7 @@
 #include "awareness_source.hpp"
 #include "overlay_sources.hpp"
 #include "saras/overlay/image_watch.hpp"
+#include "stiffness_source.hpp"
 
 namespace saras_ros1 {
 
@@ -24,8 +25,9 @@ class VisualFeedback : public nodelet::Nodelet {
     image_transport::Subscriber images;
     ros::Subscriber infos;
     image_transport::Publisher out;
-    std::optional<saras::OverlayPainter> painter;  // empty: no usable camera_info
-    std::optional<saras::AwarenessInset> inset;    // empty: not wanted, or no usable camera_info
+    std::optional<saras::OverlayPainter> painter;        // empty: no usable camera_info
+    std::optional<saras::AwarenessInset> inset;          // empty: not wanted, or no usable camera_info
+    std::unique_ptr<saras::StiffnessOverlay> stiffness;  // null: as above
     Eigen::Matrix3d rectified_R_raw = Eigen::Matrix3d::Identity();
     sensor_msgs::CameraInfo info;
     std::string why_no_painter = "no camera_info yet";
@@ -53,6 +55,8 @@ class VisualFeedback : public nodelet::Nodelet {
   void release_pair(const std::array<sensor_msgs::ImageConstPtr, 2>& images);
   void publish(std::size_t eye, const sensor_msgs::ImageConstPtr& image, saras::OverlayNotice notice,
                const saras::ToolOverlayOutput* tools);
+  void look_at_map(const std_msgs::Header& left_image);
+  void draw_map(Eye& eye, const saras::ImageView& image);
   void draw_inset(const Eye& eye, const saras::ImageView& image);
   void follow_pairing(const saras::StereoPairingOutput& output);
   double since_last_step();
@@ -60,6 +64,13 @@ class VisualFeedback : public nodelet::Nodelet {
   std::array<Eye, 2> eyes_;
   std::unique_ptr<OverlaySources> sources_;
   std::unique_ptr<AwarenessSource> awareness_;  // null: no inset is wanted
+  std::unique_ptr<StiffnessSource> stiffness_;  // null: no stiffness map is wanted
+  saras::StiffnessOverlayStyle stiffness_style_;
+  double map_timeout_s_ = 0.0, map_pose_within_s_ = 0.0;
+  bool map_wanted_ = false;
+  std::shared_ptr<const StiffnessMap> map_;  // of the pair that is drawn; null: not known, map_why_not_ says why
+  saras::Pose left_T_map_;
+  std::string map_why_not_ = "no map yet";
   saras::AwarenessInsetStyle inset_style_;
   bool inset_wanted_ = false;
   std::optional<saras::ToolOverlay> law_;

@@ -27,6 +27,8 @@ __all__: list[str] = [
     "StereoPairing",
     "StereoPairingConfig",
     "StereoPairingOutput",
+    "StiffnessOverlay",
+    "StiffnessOverlayStyle",
     "ToolMark",
     "ToolOverlay",
     "ToolOverlayConfig",
@@ -919,6 +921,98 @@ class AwarenessInset:
     def box(self) -> typing.Annotated[list[int], "FixedSize(4)"]:
         """
         (left, top, width, height) [px]
+        """
+
+class StiffnessOverlayStyle:
+    """
+    How the stiffness map looks on the organ.
+    """
+
+    _fields: typing.ClassVar[list] = ["low_N_m", "high_N_m", "opacity", "uncertain_std_N_m", "faint_opacity", "bar"]
+    def __copy__(self) -> StiffnessOverlayStyle: ...
+    def __deepcopy__(self, arg0: dict) -> StiffnessOverlayStyle: ...
+    def __init__(self, **kwargs) -> None:
+        """
+        How the stiffness map looks on the organ.
+        """
+    def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
+    @property
+    def bar(self) -> bool:
+        """
+        the colour bar
+        """
+    @bar.setter
+    def bar(self, arg1: bool) -> None: ...
+    @property
+    def faint_opacity(self) -> float:
+        """
+        of what is unsure, and of the grey of what is not known
+        """
+    @faint_opacity.setter
+    def faint_opacity(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def high_N_m(self) -> float:
+        """
+        yellow end [N/m]
+        """
+    @high_N_m.setter
+    def high_N_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def low_N_m(self) -> float:
+        """
+        dark end of the colours [N/m]
+        """
+    @low_N_m.setter
+    def low_N_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def opacity(self) -> float:
+        """
+        where it is sure
+        """
+    @opacity.setter
+    def opacity(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def uncertain_std_N_m(self) -> float:
+        """
+        such a deviation is as faint as what is not known [N/m]
+        """
+    @uncertain_std_N_m.setter
+    def uncertain_std_N_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class StiffnessOverlay:
+    """
+    Draws the stiffness map over the organ in one eye's image: opacity says how sure.
+    """
+    def __init__(self, camera: CameraConfig, style: StiffnessOverlayStyle = ...) -> None:
+        """
+        Raises ConfigError.
+        """
+    def draw(
+        self,
+        vertices: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"],
+        stiffness: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        std: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        triangles: typing.Annotated[numpy.typing.ArrayLike, numpy.int32, "[m, 3]"],
+        left_T_map: numpy.typing.ArrayLike,
+        image: numpy.typing.NDArray[numpy.uint8],
+        encoding: str,
+    ) -> bool:
+        """
+        vertices (n, 3) [m], stiffness (n,) [N/m], std (n,) [N/m]; NaN or infinite: not known; triangles (m, 3);
+        left_T_map (4, 4) to the rectified left optical frame. False: the image is of another size.
+        """
+    def draw_unknown(self, image: numpy.typing.NDArray[numpy.uint8], encoding: str) -> bool:
+        """
+        Says that there is no map. False: the image is of another size.
+        """
+    @property
+    def bar(self) -> typing.Annotated[list[int], "FixedSize(4)"]:
+        """
+        (left, top, width, height) of the colour bar [px].
         """
 
 def color_of(level: saras._core.collision.ProximityState) -> tuple[int, int, int, int]:

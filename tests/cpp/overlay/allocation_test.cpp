@@ -4,6 +4,7 @@
 #include "saras/overlay/awareness_inset.hpp"
 #include "saras/overlay/image_watch.hpp"
 #include "saras/overlay/overlay_painter.hpp"
+#include "saras/overlay/stiffness_overlay.hpp"
 #include "support/no_allocation.hpp"
 #include "support/random_values.hpp"
 
@@ -96,6 +97,31 @@ TEST(OverlayAllocation, AwarenessInset) {
     EXPECT_TRUE(inset.draw(view, image));
     const std::size_t allocations = counter.count();
     EXPECT_EQ(allocations, 0u);
+  }
+}
+TEST(OverlayAllocation, StiffnessOverlay) {
+  if (!test::can_count) {
+    GTEST_SKIP() << "the sanitizer owns malloc";
+  }
+  std::vector<std::uint8_t> pixels(640 * 480 * 3);
+  const ImageView image{pixels.data(), 640, 480, 640 * 3, PixelFormat::kBgr8};
+  std::vector<MapVertex> vertices = {{{0.0, 0.0, 0.1}, 300.0, 10.0}, {{0.02, 0.0, 0.1}, 900.0, 10.0}, {{0, 0.02, 0.1}}};
+  const std::vector<MapTriangle> triangles = {{0, 1, 2}, {2, 1, 0}, {0, 1, 7}, {-1, 1, 2}};
+  StiffnessMapView map;
+  map.vertices = vertices.data();
+  map.vertex_count = static_cast<int>(vertices.size());
+  map.triangles = triangles.data();
+  map.triangle_count = static_cast<int>(triangles.size());
+  for (const bool rectified : {true, false}) {
+    StiffnessOverlay overlay(camera(rectified), {});
+    for (const double value : {0.1, -0.2, test::kNan, 1e9}) {
+      vertices[0].at.z() = vertices[1].std_N_m = value;
+      const test::MallocCounter counter;
+      EXPECT_TRUE(overlay.draw(map, image));
+      EXPECT_TRUE(overlay.draw_unknown(image));
+      const std::size_t allocations = counter.count();
+      EXPECT_EQ(allocations, 0u);
+    }
   }
 }
 
