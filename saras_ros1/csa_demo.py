@@ -11,17 +11,15 @@ import datetime
 import json
 import math
 import os
-import shutil
-import signal
 import subprocess
-import sys
 import threading
 import time
 from pathlib import Path
 
 import numpy as np
 
-from saras_ros1.demo import ROOT, START_TIMEOUT_S, DemoError, close_bag, environment, wait_for_master
+from saras_ros1.demo import ROOT, START_TIMEOUT_S, DemoError, close_bag
+from saras_ros1.demo_session import died, ros_session, run_demo
 from saras_ros1.processes import Child
 
 SYSTEM = ROOT / "config" / "csa" / "demo.json"
@@ -162,18 +160,7 @@ def publish_facts(arguments: argparse.Namespace) -> object:
 
 def run_system(arguments: argparse.Namespace, out: Path) -> None:
     """Roscore and csa.launch, for as long as operate() needs; all processes are gone afterwards."""
-    env = environment(out)
-    os.environ.update({key: env[key] for key in ("ROS_MASTER_URI", "ROS_IP", "ROS_LOG_DIR")})
-    os.environ.pop("ROS_HOSTNAME", None)
-    master_port = env["ROS_MASTER_URI"].rsplit(":", 1)[1]
-    with Child("roscore", ["roscore", "-p", master_port], out / "log" / "roscore.log", env) as core:
-        wait_for_master(core)
-        import rospy
-
-        from saras_ros1 import direct_publishing
-
-        direct_publishing.install()
-        rospy.init_node("demo", disable_signals=True)
+    with ros_session(out) as env:
         facts = publish_facts(arguments)
         rviz = not arguments.headless and bool(os.environ.get("DISPLAY"))
         given = {"system": arguments.system, "record": "true", "bag": out / "session.bag", "rviz": str(rviz).lower()}
@@ -184,7 +171,6 @@ def run_system(arguments: argparse.Namespace, out: Path) -> None:
             operate(arguments, system)
             close_bag(out)
         del facts
-        rospy.signal_shutdown("demo over")
 
 
 def conclude(out: Path) -> list[str]:
@@ -207,8 +193,7 @@ def conclude(out: Path) -> list[str]:
         problems.append(f"no full contact: {grades['Contact'].detail}")
     if grades["Out of the region"].value == "none picked":
         problems.append("no region was closed")
-    log = (out / "log" / "roslaunch.log").read_text(encoding="utf-8", errors="replace")
-    problems += [text.strip() for text in log.splitlines() if "process has died" in text]
+    problems += died(out / "log" / "roslaunch.log")
     print(f"[demo] report {out / 'report.html'}\n[demo] bag    {bags[0]}")
     return problems
 
@@ -217,23 +202,4 @@ def main(argv: list[str]) -> int:
     """Exit code: 0 all well, 1 something was not, 2 wrong arguments."""
     arguments = parse(argv)
     out: Path = arguments.out
-    if shutil.which("roslaunch") is None:
-        print("[demo] roslaunch is not on PATH: run script/bootstrap and source devel/setup.bash", file=sys.stderr)
-        return 1
-    if list(out.glob("*.bag*")):
-        print(f"[demo] {out} holds a recording already: choose another --out", file=sys.stderr)
-        return 2
-    out.mkdir(parents=True, exist_ok=True)
-    signal.signal(signal.SIGTERM, lambda *_: signal.raise_signal(signal.SIGINT))
-    problems: list[str] = []
-    try:
-        run_system(arguments, out)
-    except KeyboardInterrupt:
-        problems.append("interrupted while starting or stopping")
-    except DemoError as error:
-        problems.append(str(error))
-    problems += conclude(out)
-    for problem in problems:
-        print(f"[demo] PROBLEM {problem}", file=sys.stderr)
-    print(f"[demo] {'ended with problems' if problems else 'all well'}: {out}", flush=True)
-    return 1 if problems else 0
+    return run_demo(out, lambda: run_system(arguments, out), lambda: conclude(out))

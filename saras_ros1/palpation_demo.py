@@ -9,9 +9,6 @@ from __future__ import annotations
 import argparse
 import datetime
 import os
-import shutil
-import signal
-import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -19,11 +16,12 @@ from typing import Any
 import numpy as np
 
 from saras_ros1.csa_demo import DOWN_M, publish_facts
-from saras_ros1.demo import ROOT, START_TIMEOUT_S, DemoError, close_bag, environment, wait_for_master
+from saras_ros1.demo import ROOT, START_TIMEOUT_S, DemoError, close_bag
+from saras_ros1.demo_session import died, ros_session, run_demo
 from saras_ros1.processes import Child
 
 SYSTEM = ROOT / "config" / "csa" / "palpation.json"
-LEAST_S, APPROACH_S, LOOK_S, SAY_S = 30.0, 3.0, 1.0, 4.0
+LEAST_S, APPROACH_S, LOOK_S, SAY_S, SILENT_S = 30.0, 3.0, 1.0, 4.0, 15.0
 
 
 def parse(argv: list[str]) -> argparse.Namespace:
@@ -41,6 +39,8 @@ def parse(argv: list[str]) -> argparse.Namespace:
     arguments = parser.parse_args(argv)
     if not LEAST_S <= arguments.duration <= 3600.0:
         parser.error(f"--duration {arguments.duration:g}: must be in [{LEAST_S:g}, 3600] seconds")
+    if arguments.seed < 0:
+        parser.error(f"--seed {arguments.seed}: must be at least 0")
     arguments.out = (arguments.out or ROOT / "out" / f"{datetime.datetime.now():%Y-%m-%d_%H-%M-%S}").resolve()
     return arguments
 
@@ -60,6 +60,7 @@ class Watched:
         self.rows: Any = None
         self.begun_with: Any = None
         self.series: list[Any] = []
+        self.silent = False
 
     @property
     def there(self) -> bool:
@@ -126,6 +127,7 @@ def palpate(arguments: argparse.Namespace, setup: Any, watched: Watched, system:
                 said_s = time.monotonic()
                 print(f"[demo] {said_s - begin:4.0f} s  {watched.line()}", flush=True)
             time.sleep(0.05)
+        watched.silent = watched.cloud.value(SILENT_S) is None
         said = rospy.ServiceProxy("/csa/modeler/save", KeepModel)(str(arguments.out / "map.ply"), True)
         print(f"[demo] {said.message}", flush=True)
         rospy.ServiceProxy("/csa/teleop/set_exploring", SetBool)(False)
@@ -142,22 +144,14 @@ def _alive(children: tuple[Child, ...]) -> None:
             raise DemoError(f"a launch ended by itself (code {child.exit_code}):\n{child.tail()}")
 
 
-def run_system(arguments: argparse.Namespace, system_file: Path) -> Watched:
-    """Roscore, csa.launch and modeler.launch, for as long as palpate() needs; all processes are gone afterwards."""
+def run_system(arguments: argparse.Namespace, system_file: Path, watching: list[Watched]) -> None:
+    """csa.launch and modeler.launch, for as long as palpate() needs; what is seen goes to watching as soon as it is."""
     from saras.csa.system import load
     from saras_ros1.palpation_truth import Truth
 
-    out, env = arguments.out, environment(arguments.out)
-    os.environ.update({key: env[key] for key in ("ROS_MASTER_URI", "ROS_IP", "ROS_LOG_DIR")})
-    os.environ.pop("ROS_HOSTNAME", None)
+    out = arguments.out
     setup = load(system_file).setup()
-    with Child(
-        "roscore", ["roscore", "-p", env["ROS_MASTER_URI"].rsplit(":", 1)[1]], out / "log" / "roscore.log", env
-    ) as core:
-        wait_for_master(core)
-        import rospy
-
-        rospy.init_node("demo", disable_signals=True)
+    with ros_session(out) as env:
         arguments.system = system_file
         facts = publish_facts(arguments)
         rviz = str(not arguments.headless and bool(os.environ.get("DISPLAY"))).lower()
@@ -170,13 +164,12 @@ def run_system(arguments: argparse.Namespace, system_file: Path) -> Watched:
             flush=True,
         )
         watched = Watched(Truth(setup))
+        watching.append(watched)
         with Child("roslaunch", command, out / "log" / "roslaunch.log", env) as system:
             with Child("modeler", beside, out / "log" / "modeler.log", env) as modeler:
                 palpate(arguments, setup, watched, system, modeler)
             close_bag(out)
         del facts
-        rospy.signal_shutdown("demo over")
-    return watched
 
 
 def conclude(arguments: argparse.Namespace, watched: Watched | None) -> list[str]:
@@ -193,9 +186,10 @@ def conclude(arguments: argparse.Namespace, watched: Watched | None) -> list[str
     print(f"[demo] inclusion found {1e3 * last.inclusion_m:.1f} mm off; report {out / 'report.html'}", flush=True)
     if not last.inclusion_m <= FOUND_M:
         problems.append(f"the inclusion was not found: {1e3 * last.inclusion_m:.1f} mm off")
+    if watched.silent:
+        problems.append(f"no map in the last {SILENT_S:g} s: what is shown is old")
     for name in ("roslaunch.log", "modeler.log"):
-        log = (out / "log" / name).read_text(encoding="utf-8", errors="replace")
-        problems += [text.strip() for text in log.splitlines() if "process has died" in text]
+        problems += died(out / "log" / name)
     if not list(out.glob("*.bag")):
         problems.append(f"no bag in {out}")
     return problems
@@ -205,26 +199,11 @@ def main(argv: list[str]) -> int:
     """Exit code: 0 all well, 1 something was not, 2 wrong arguments."""
     arguments = parse(argv)
     out: Path = arguments.out
-    if shutil.which("roslaunch") is None:
-        print("[demo] roslaunch is not on PATH: run script/bootstrap and source devel/setup.bash", file=sys.stderr)
-        return 1
-    if list(out.glob("*.bag*")):
-        print(f"[demo] {out} holds a recording already: choose another --out", file=sys.stderr)
-        return 2
-    out.mkdir(parents=True, exist_ok=True)
-    signal.signal(signal.SIGTERM, lambda *_: signal.raise_signal(signal.SIGINT))
-    from saras_ros1.palpation_truth import draw
+    watched: list[Watched] = []
 
-    problems: list[str] = []
-    watched = None
-    try:
-        watched = run_system(arguments, draw(SYSTEM, out, arguments.seed))
-    except KeyboardInterrupt:
-        problems.append("interrupted while starting or stopping")
-    except DemoError as error:
-        problems.append(str(error))
-    problems += conclude(arguments, watched)
-    for problem in problems:
-        print(f"[demo] PROBLEM {problem}", file=sys.stderr)
-    print(f"[demo] {'ended with problems' if problems else 'all well'}: {out}", flush=True)
-    return 1 if problems else 0
+    def run() -> None:
+        from saras_ros1.palpation_truth import draw
+
+        run_system(arguments, draw(SYSTEM, out, arguments.seed), watched)
+
+    return run_demo(out, run, lambda: conclude(arguments, watched[0] if watched else None))

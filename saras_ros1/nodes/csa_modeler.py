@@ -199,15 +199,10 @@ class CsaModeler(CsaNode):
             rospy.logwarn_throttle(5.0, f"{self.name}: {status}")
 
     def _tell_stiffest(self, message: CsaModelerState, laid) -> None:
-        """Of the vertices in the region, the one whose stiffness less a deviation is greatest."""
-        surely = np.where(np.isfinite(laid.stiffness_N_m), laid.stiffness_N_m - laid.stiffness_std_N_m, -np.inf)
-        region = self.region
-        if region is not None:
-            surely = np.where(region.contains(laid.vertices, 1e-3), surely, -np.inf)
-        best = int(surely.argmax())
         message.stiffest_N_m = message.stiffest_std_N_m = math.nan
         vector(message.stiffest, np.full(3, np.nan))
-        if np.isfinite(surely[best]):
+        best = laid.stiffest(self.region)
+        if best is not None:
             vector(message.stiffest, laid.vertices[best])
             message.stiffest_N_m = float(laid.stiffness_N_m[best])
             message.stiffest_std_N_m = float(laid.stiffness_std_N_m[best])
@@ -234,18 +229,9 @@ class CsaModeler(CsaNode):
         return points
 
     def _set_region(self, corners: np.ndarray) -> None:
-        """No corners: the whole of an open mesh but its border; nothing of a closed one, which has no flat chart."""
+        """No corners: the whole of an open mesh; nothing of a closed one."""
         mesh = self.live.laid.mesh
-        if len(corners):
-            self.region = Region(corners, mesh)
-            return
-        if mesh.closed:
-            self.region = None
-            return
-        middle = mesh.vertices.mean(0)
-        away = mesh.vertices - middle
-        length = np.linalg.norm(away, axis=1, keepdims=True)
-        self.region = Region(middle + away * np.maximum(0.0, 1.0 - self.border_m / np.maximum(length, 1e-9)), mesh)
+        self.region = Region(corners, mesh) if len(corners) else Region.whole(mesh, self.border_m)
 
     def _on_reset(self, _) -> TriggerResponse:
         with self.keeping:

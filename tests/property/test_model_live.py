@@ -154,3 +154,32 @@ def test_no_regions() -> None:
     ):
         with pytest.raises(ConfigError, match=word):
             Region(corners, mesh)
+
+
+def test_the_whole_of_an_open_mesh_is_a_region_but_its_border_and_a_closed_one_has_none() -> None:
+    mesh = bent_prior()
+    region = Region.whole(mesh, 5e-3)
+    inner = np.abs(mesh.vertices[:, :2]).max(1) < 0.016
+    assert region.contains(mesh.vertices[inner]).all()
+    assert not region.contains(mesh.vertices[np.abs(mesh.vertices[:, :2]).max(1) > 0.022]).any()
+    corners = np.array([[0, 0, 0], [0.02, 0, 0], [0, 0.02, 0], [0, 0, 0.02]], dtype=float)
+    assert (
+        Region.whole(Mesh(corners, np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], dtype=np.int32)), 0.0) is None
+    )
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_stiffest_vertex_is_the_surest_one_and_never_an_unknown_one(seed) -> None:
+    rng = np.random.default_rng(seed)
+    laid = LiveMap(bent_prior()).laid
+    assert laid.stiffest() is None  # nothing was touched
+    count = len(laid.vertices)
+    laid.stiffness_N_m = np.where(rng.random(count) < 0.5, np.nan, rng.uniform(100.0, 1500.0, count))
+    laid.stiffness_std_N_m = np.where(np.isnan(laid.stiffness_N_m), np.inf, rng.uniform(1.0, 500.0, count))
+    region = Region(rng.uniform(-0.02, 0.02, (5, 3)) * (1, 1, 0), laid.mesh) if seed % 2 else None
+    there = [
+        (laid.stiffness_N_m[i] - laid.stiffness_std_N_m[i], i)
+        for i in range(count)
+        if np.isfinite(laid.stiffness_N_m[i]) and (region is None or region.contains(laid.vertices[i], 1e-3)[0])
+    ]
+    assert laid.stiffest(region) == (max(there)[1] if there else None)

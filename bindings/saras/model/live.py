@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from saras._core import model as _core
 from saras.model.learning import learn_hyperparameters
+from saras.model.region import Region
 from saras.model.registering import DeformationGrid, Mesh
 from saras.model.stiffness_map import SurfaceEstimates
 from saras.model.storage import StiffMesh
@@ -67,6 +68,14 @@ class Laid:
     stiffness_std_N_m: Array
     """(n,) infinite: not known"""
     generation: int
+
+    def stiffest(self, region: Region | None = None, margin_m: float = 1e-3) -> int | None:
+        """The vertex, in the region, whose stiffness less a deviation is greatest; None: nothing is known there."""
+        surely = np.where(np.isfinite(self.stiffness_N_m), self.stiffness_N_m - self.stiffness_std_N_m, -np.inf)
+        if region is not None:
+            surely = np.where(region.contains(self.vertices, margin_m), surely, -np.inf)
+        best = int(surely.argmax())
+        return best if np.isfinite(surely[best]) else None
 
 
 class LiveMap:

@@ -39,6 +39,16 @@ class Region:
         n = self.normal[:, None] * self.normal[None, :]
         self._covariance = ACROSS_M**2 * (np.eye(3) - n) + ALONG_M**2 * n
 
+    @classmethod
+    def whole(cls, mesh: Mesh, border_m: float) -> Region | None:
+        """All of an open mesh but border_m [m] inwards of its edge; None for a closed one, which has no flat chart."""
+        if mesh.closed:
+            return None
+        middle = mesh.vertices.mean(0)
+        away = mesh.vertices - middle
+        length_m = np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-9)
+        return cls(middle + away * np.maximum(0.0, 1.0 - border_m / length_m), mesh)
+
     def chart(self, points: npt.ArrayLike) -> Array:
         """(n, 2) coordinates of (n, 3) points [m]."""
         flat: Array = (np.asarray(points, dtype=float).reshape(-1, 3) - self._origin) @ self._axes.T
