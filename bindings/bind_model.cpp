@@ -70,9 +70,9 @@ void bind_model(py::module_& m) {
   bind_model_stiffness(m);
   bind_model_registration(m);
   bind_model_search(m);
+  bind_model_deformation(m);
 #ifdef SARAS_WITH_CERES
   bind_model_learning(m);
-  bind_model_deformation(m);
 #endif
 }
 

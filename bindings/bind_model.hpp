@@ -18,7 +18,7 @@ void bind_model_grid(py::module_& m);
 void bind_model_process(py::module_& m);
 void bind_model_stiffness(py::module_& m);
 void bind_model_registration(py::module_& m);
-void bind_model_learning(py::module_& m);     ///< where the core has it: Ceres
-void bind_model_deformation(py::module_& m);  ///< where the core has it: Ceres
+void bind_model_deformation(py::module_& m);
+void bind_model_learning(py::module_& m);  ///< where the core has it: Ceres
 
 }  // namespace saras::bindings

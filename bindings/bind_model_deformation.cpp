@@ -6,9 +6,9 @@ namespace {
 
 /// A grid, and the mesh that it encloses.
 struct GridOfMesh {
-  GridOfMesh(std::shared_ptr<const MeshWithTree> of, double spacing)
+  GridOfMesh(std::shared_ptr<const IndexedMesh> of, double spacing)
       : mesh(std::move(of)), spacing_m(spacing), grid(mesh->mesh, spacing) {}
-  std::shared_ptr<const MeshWithTree> mesh;
+  std::shared_ptr<const IndexedMesh> mesh;
   double spacing_m;
   DeformationGrid grid;
 };
@@ -29,7 +29,7 @@ void bind_model_deformation(py::module_& m) {
   const DeformationOptions defaults;
   using G = GridOfMesh;
   py::class_<G>(m, "DeformationGrid", "Cubes around a mesh whose corners carry displacements.")
-      .def(py::init([](const std::shared_ptr<MeshWithTree>& mesh, double spacing_m) {
+      .def(py::init([](const std::shared_ptr<IndexedMesh>& mesh, double spacing_m) {
              return std::make_unique<G>(mesh, spacing_m);
            }),
            py::arg("mesh"), py::arg("spacing_m") = defaults.spacing_m, "Raises ModelError, ConfigError.")

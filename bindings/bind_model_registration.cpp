@@ -40,9 +40,9 @@ py::tuple store_matches(const std::vector<MeshMatch>& matches) {
 }
 
 void bind_mesh(py::module_& m) {
-  py::class_<MeshWithTree, std::shared_ptr<MeshWithTree>>(m, "Mesh", "Triangles with a tree for closest points.")
+  py::class_<IndexedMesh, std::shared_ptr<IndexedMesh>>(m, "Mesh", "Triangles with a tree for closest points.")
       .def(py::init([](const py::object& vertices, const py::object& triangles) {
-             return std::make_shared<MeshWithTree>(load_mesh(vertices, triangles));
+             return std::make_shared<IndexedMesh>(load_mesh(vertices, triangles));
            }),
            py::arg("vertices"), py::arg("triangles"),
            "vertices (n, 3) [m], triangles (m, 3) counter-clockwise from outside. Raises ModelError: empty, not "
@@ -50,7 +50,7 @@ void bind_mesh(py::module_& m) {
            "index out of range, no area, not manifold, another unit than metres.")
       .def(
           "likely",
-          [](const MeshWithTree& self, const py::object& points, const py::object& covariances) {
+          [](const IndexedMesh& self, const py::object& points, const py::object& covariances) {
             const auto given = load_points_on(points, covariances);
             std::vector<MeshMatch> matches(given.size());
             {
@@ -68,7 +68,7 @@ void bind_mesh(py::module_& m) {
           "(n,), barycentric weights (n, 3), squared deviations (n,).")
       .def(
           "closest",
-          [](const MeshWithTree& self, const py::object& points) {
+          [](const IndexedMesh& self, const py::object& points) {
             const auto given = load_rows(points, "points");
             std::vector<MeshMatch> matches(given.size());
             {
@@ -81,10 +81,10 @@ void bind_mesh(py::module_& m) {
           },
           py::arg("points"), "The closest points of the surface, as `likely`; squared distances [m^2].")
       .def_property_readonly(
-          "vertices", [](const MeshWithTree& self) { return store_rows(self.mesh.vertices); }, "(n, 3) [m]")
+          "vertices", [](const IndexedMesh& self) { return store_rows(self.mesh.vertices); }, "(n, 3) [m]")
       .def_property_readonly(
           "triangles",
-          [](const MeshWithTree& self) {
+          [](const IndexedMesh& self) {
             py::array_t<std::int32_t> array({static_cast<py::ssize_t>(self.mesh.triangles.size()), py::ssize_t{3}});
             for (std::size_t i = 0; i < self.mesh.triangles.size(); ++i) {
               std::copy_n(self.mesh.triangles[i].data(), 3, array.mutable_data() + 3 * i);
@@ -93,9 +93,9 @@ void bind_mesh(py::module_& m) {
           },
           "(m, 3)")
       .def_property_readonly(
-          "vertex_normals", [](const MeshWithTree& self) { return store_rows(self.mesh.vertex_normals()); },
+          "vertex_normals", [](const IndexedMesh& self) { return store_rows(self.normals); },
           "(n, 3) outward, area-weighted")
-      .def_property_readonly("closed", [](const MeshWithTree& self) { return self.mesh.closed(); });
+      .def_property_readonly("closed", [](const IndexedMesh& self) { return self.mesh.closed(); });
 }
 
 }  // namespace
@@ -138,8 +138,9 @@ void bind_model_registration(py::module_& m) {
   const RegistrationOptions defaults;
   m.def(
       "register_rigid",
-      [](const MeshWithTree& mesh, const py::object& points, const py::object& covariances, const Pose& base_T_mesh,
-         double gate, double mesh_noise_m, int max_iterations, double tolerance_m, bool most_likely) {
+      [](const IndexedMesh& mesh, const py::object& points, const py::object& covariances, const Pose& base_T_mesh,
+         double gate, double mesh_noise_m, int max_iterations, double tolerance_m, bool most_likely,
+         const Pose& base_T_prior, double prior_shift_m, double prior_turn_rad) {
         const auto given = load_points_on(points, covariances);
         RegistrationOptions options;
         options.gate = gate;
@@ -147,17 +148,22 @@ void bind_model_registration(py::module_& m) {
         options.max_iterations = max_iterations;
         options.tolerance_m = tolerance_m;
         options.most_likely = most_likely;
+        options.prior = {base_T_prior, prior_shift_m, prior_turn_rad};
         const py::gil_scoped_release release;
         return register_rigid(mesh.mesh, mesh.tree, given, base_T_mesh, options);
       },
       py::arg("mesh"), py::arg("points"), py::arg("covariances") = py::none(), py::arg("base_T_mesh") = Pose{},
       py::kw_only(), py::arg("gate") = defaults.gate, py::arg("mesh_noise_m") = defaults.mesh_noise_m,
       py::arg("max_iterations") = defaults.max_iterations, py::arg("tolerance_m") = defaults.tolerance_m,
-      py::arg("most_likely") = true,
+      py::arg("most_likely") = true, py::arg("base_T_prior") = Pose{},
+      py::arg("prior_shift_m") = defaults.prior.shift_m, py::arg("prior_turn_rad") = defaults.prior.turn_rad,
       "Iterative most likely point registration (Billings, Boctor, Taylor 2015). points (n, 3) [m] on the surface,\n"
       "covariances (n, 3, 3) of their errors [m^2] (None: 1 mm), base_T_mesh (4, 4) to start from. gate: squared "
       "deviation\n"
-      "above which a point is left out; most_likely=False: plain ICP. Raises ModelError.");
+      "above which a point is left out; most_likely=False: plain ICP. prior_shift_m, prior_turn_rad: standard "
+      "deviations "
+      "of\n"
+      "how far from base_T_prior (4, 4) the mesh is believed to lie. Raises ModelError.");
 }
 
 }  // namespace saras::bindings

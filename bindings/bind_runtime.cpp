@@ -7,6 +7,7 @@
 namespace saras::bindings {
 
 void bind_runtime_flight(py::module_& m);
+void bind_runtime_model(py::module_& m);
 
 namespace {
 
@@ -241,6 +242,7 @@ void bind_runtime(py::module_& m) {
   bind_socket(m);
   bind_host(m);
   bind_runtime_flight(m);
+  bind_runtime_model(m);
 }
 
 }  // namespace saras::bindings

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections import deque
-from typing import Any, NamedTuple
+from typing import Any, Callable
 
 import numpy as np
 import rospy
@@ -18,26 +17,19 @@ WAITING = 50
 CALLBACK_QUEUE = 200
 
 
-class Batch(NamedTuple):
-    """Samples in their order, dt [s] apart."""
-
-    positions: np.ndarray
-    velocities: np.ndarray
-    forces: np.ndarray
-    dt: float
-
-
 class Samples:
-    """Of <source>/measured_cp, measured_cv and measured_cf with equal stamps. At most `room` wait to be learned."""
+    """Of <source>/measured_cp, measured_cv and measured_cf with equal stamps.
 
-    def __init__(self, node: Any, source: str, frame: str, timeout_s: float, room: int) -> None:
+    sink(stamps (n,) [s], positions (n, 3), forces, velocities): gets each sample; must not wait.
+    """
+
+    def __init__(self, node: Any, source: str, frame: str, timeout_s: float, sink: Callable[..., int]) -> None:
         self.tip = self._input(node, f"{source}/measured_cp", PoseStamped, convert.pose, frame, timeout_s)
         self.speed = self._input(node, f"{source}/measured_cv", TwistStamped, convert.twist, frame, timeout_s)
         self.force = self._input(node, f"{source}/measured_cf", WrenchStamped, convert.wrench, frame, timeout_s)
         self._parts: dict[int, dict[str, np.ndarray]] = {}
-        self._ready: deque[tuple[int, np.ndarray, np.ndarray, np.ndarray]] = deque(maxlen=room)
-        self._last_ns: int | None = None
-        self.heard = self.dropped = 0
+        self._sink = sink
+        self.heard = 0
         self._joined_s, self._timeout_s = time.monotonic(), timeout_s
         for source_input in (self.tip, self.speed, self.force):
             source_input.listeners.append(self._on_part)
@@ -55,27 +47,12 @@ class Samples:
         parts[part.topic] = part.value[:3, 3] if part is self.tip else part.value[:3]
         if len(parts) == 3:
             del self._parts[part.stamp_ns]
-            if len(self._ready) == self._ready.maxlen:
-                self.dropped += 1
             self.heard += 1
             self._joined_s = time.monotonic()
-            self._ready.append((part.stamp_ns, *(parts[i.topic] for i in (self.tip, self.speed, self.force))))
+            x, f, v = (parts[i.topic][None] for i in (self.tip, self.force, self.speed))
+            self._sink(np.array([part.stamp_ns / NANOSECONDS]), x, f, v)
         elif len(self._parts) > WAITING:
             del self._parts[min(self._parts)]
-
-    def take(self) -> Batch | None:
-        """All that wait; None: none."""
-        rows = []
-        while self._ready:
-            rows.append(self._ready.popleft())
-        if not rows:
-            return None
-        rows.sort(key=lambda row: row[0])
-        before, self._last_ns = self._last_ns, rows[-1][0]
-        gaps = len(rows) if before is not None else max(1, len(rows) - 1)
-        dt = (rows[-1][0] - (before if before is not None else rows[0][0])) / NANOSECONDS / gaps
-        x, v, f = (np.array([row[i] for row in rows]) for i in (1, 2, 3))
-        return Batch(x, v, f, min(max(dt, 1e-4), 0.1))
 
     def missing(self) -> str:
         """What is silent; empty: nothing."""

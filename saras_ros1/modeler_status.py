@@ -13,6 +13,22 @@ TAKEN = ("LEARNED", "RELEARNED")
 WRONG = ("SENSOR_DRIFT", "IMPLAUSIBLE_POSITION", "IMPLAUSIBLE_FORCE", "INVALID", "OUTLIER")
 
 
+class Pace:
+    """How fast a counter grows, over the last second or more."""
+
+    def __init__(self) -> None:
+        self._seen: deque[tuple[float, int]] = deque()
+
+    def rate_hz(self, count: int) -> float:
+        """count: what it shows now. Call it a few times a second."""
+        now = time.monotonic()
+        self._seen.append((now, count))
+        while len(self._seen) > 2 and self._seen[1][0] < now - RECENT_S:
+            self._seen.popleft()
+        since, before = self._seen[0]
+        return max(0, count - before) / (now - since) if now > since else 0.0
+
+
 class SampleStatus:
     """Counts verdicts, since the start and over the last second."""
 
@@ -21,11 +37,10 @@ class SampleStatus:
         self._recent: deque[tuple[float, dict[str, int]]] = deque()
         self.total: dict[str, int] = {}
 
-    def count(self, said: dict[str, int]) -> None:
-        """How many samples met which verdict."""
-        self._recent.append((time.monotonic(), said))
-        for name, number in said.items():
-            self.total[name] = self.total.get(name, 0) + number
+    def count(self, total: dict[str, int]) -> None:
+        """How many samples met which verdict since the start."""
+        self._recent.append((time.monotonic(), {name: n - self.total.get(name, 0) for name, n in total.items()}))
+        self.total = dict(total)
 
     def reset(self) -> None:
         """Forgets."""

@@ -23,12 +23,13 @@ from saras import ConfigError, Error, ModelError
 from saras.model import StiffMesh, StiffnessGpConfig
 from saras.model.live import Bending, LiveMap, Snapshot
 from saras.model.region import Region
+from saras.runtime import ModelHostConfig, VertexMapConfig
 from saras_ros1 import modeler_messages as messages
 from saras_ros1.csa_node import CsaNode, vector
 from saras_ros1.modeler_explorer import Explorer
 from saras_ros1.modeler_prior import prior_mesh, refuse_elsewhere
 from saras_ros1.modeler_samples import Samples
-from saras_ros1.modeler_status import SampleStatus
+from saras_ros1.modeler_status import Pace, SampleStatus
 from saras_ros1.msg import CsaModelerState
 from saras_ros1.node import run
 from saras_ros1.params import Params
@@ -38,21 +39,27 @@ HYPER_GROWTH = 1.3  #: places since the last time, above which hyper-parameters 
 
 
 class CsaModeler(CsaNode):
-    """Learning, the whole map, bending and planning each have a thread; what they compute is C++ without the GIL."""
+    """Two C++ threads learn and ask; a thread each here shows, bends and plans, by C++ without the GIL."""
 
     def __init__(self) -> None:
         os.nice(5)  # when the processor is short, control goes before maps
         super().__init__("csa_modeler")
         p = self.params
-        config = p.build(StiffnessGpConfig, "law")
+        rates = p.section("rates")
+        config = ModelHostConfig(
+            law=p.build(StiffnessGpConfig, "law"),
+            vertices=p.build(VertexMapConfig, "vertices"),
+            free_m=p.number("free_m", 0.0, 0.1),
+            near_m=p.number("touched_radius_m", 1e-4, 0.05),
+            touched_hz=rates.number("touched_hz", 1e-1, 200.0),
+            map_hz=rates.number("map_hz", 1e-3, 200.0),
+            room=p.integer("room", 10, 100_000),
+        )
         prior = p.section("prior")
         mesh = prior_mesh(self.setup, prior.number("half_width_m", 2e-3, 0.5), prior.integer("vertices", 9, 200_000))
-        self.live = LiveMap(mesh, config, _bending(p.section("bending")), free_m=p.number("free_m", 0.0, 0.1))
-        self.samples = Samples(
-            self, p.text("source"), self.frame, p.number("stale_s", 0.05, 10.0), p.integer("room", 10, 100_000)
-        )
-        self.said = SampleStatus(config)
-        self.radius_m = p.number("touched_radius_m", 1e-4, 0.05)
+        self.live = LiveMap(mesh, config, _bending(p.section("bending")))
+        self.samples = Samples(self, p.text("source"), self.frame, p.number("stale_s", 0.05, 10.0), self.live.push)
+        self.said = SampleStatus(config.law)
         colours = p.section("colours")
         self.colours = tuple(colours.number(n, 1e-3, 1e6) for n in ("low_N_m", "high_N_m", "faded_std_N_m"))
         if self.colours[0] >= self.colours[1]:
@@ -61,21 +68,22 @@ class CsaModeler(CsaNode):
         self.known: Snapshot | None = None
         self.bent_rms_m, self.learned_places = math.nan, 0
         self.fault, self.status = "", "STALE: nothing yet"
+        self.pace, self.touched_hz = Pace(), 0.0
         self.region: Region | None = None
         self.keeping = threading.Lock()
         self._set_region(np.zeros((0, 3)))
         self._outputs()
-        rates = p.section("rates")
         self.idle: list[threading.Lock] = []
-        for name, callback in (
-            ("touched_hz", self._learn),
-            ("map_hz", self._show_all),
-            ("bend_hz", self._bend),
-            ("plan_hz", self._plan),
-            ("hyperparameters_hz", self._hyperparameters),
-            ("state_hz", self._tell),
+        for period_s, callback in (
+            (1.0 / config.touched_hz, self._show_touched),
+            (1.0 / config.map_hz, self._show_all),
+            (1.0 / rates.number("bend_hz", 1e-3, 200.0), self._bend),
+            (1.0 / rates.number("plan_hz", 1e-3, 200.0), self._plan),
+            (1.0 / rates.number("hyperparameters_hz", 1e-3, 200.0), self._hyperparameters),
+            (1.0 / rates.number("state_hz", 1e-3, 200.0), self._tell),
         ):
-            self._work(1.0 / rates.number(name, 1e-3, 200.0), callback)
+            self._work(period_s, callback)
+        self.live.start()
 
     def _work(self, period_s: float, callback: Callable[[], None]) -> None:
         idle = threading.Lock()
@@ -90,6 +98,7 @@ class CsaModeler(CsaNode):
     def run(self) -> None:
         """Ends only when no thread computes: the interpreter must not go away under one."""
         super().run()
+        self.live.stop()
         for idle in self.idle:
             idle.acquire(timeout=5.0)
 
@@ -124,30 +133,23 @@ class CsaModeler(CsaNode):
 
     # ---- threads
 
-    def _learn(self) -> None:
-        batch = self.samples.take()
-        if batch is None:
-            return
-        self.said.count(self.live.learn(batch.positions, batch.forces, batch.velocities, batch.dt))
-        tips = batch.positions[-1:] if len(batch.positions) < 3 else batch.positions[[0, -1]]
-        indices = self.live.refresh_near(tips, self.radius_m)
-        laid = self.live.laid
-        if len(indices) and indices[-1] < len(laid.vertices):
-            known = laid.stiffness_N_m[indices], laid.stiffness_std_N_m[indices]
+    def _show_touched(self) -> None:
+        touched = self.live.wait_touched(0.0)
+        if touched is not None:
+            known = touched.stiffness_N_m, touched.stiffness_std_N_m
             now = rospy.Time.now()
-            self.touched_out.publish(messages.cloud(self.frame, now, laid.vertices[indices], *known, indices))
+            self.touched_out.publish(messages.cloud(self.frame, now, touched.vertices, *known, touched.indices))
 
     def _show_all(self) -> None:
-        self.known = self.live.snapshot()
-        laid = self.live.refresh(self.known)
+        laid = self.live.laid
         now, known = rospy.Time.now(), (laid.stiffness_N_m, laid.stiffness_std_N_m)
         self.cloud_out.publish(messages.cloud(self.frame, now, laid.vertices, *known))
         painted = messages.colours(*known, *self.colours)
         self.mesh_out.publish(messages.mesh_marker(self.frame, now, laid.vertices, laid.mesh.triangles, painted))
 
     def _bend(self) -> None:
-        known = self.known
-        if known is None or not len(known.grid):
+        self.known = known = self.live.snapshot()
+        if not len(known.grid):
             return
         try:
             rms_m = self.live.bend(known)
@@ -170,7 +172,7 @@ class CsaModeler(CsaNode):
         self.next_out.publish(message)
 
     def _hyperparameters(self) -> None:
-        places = self.live.places
+        places = self.live.statistics().places
         if places < HYPER_GROWTH * self.learned_places or places < 100:
             return
         try:
@@ -180,18 +182,25 @@ class CsaModeler(CsaNode):
         self.learned_places = places
 
     def _tell(self) -> None:
-        bias, disagreement = self.live.sensor()
-        well, status = self.said.text(self.samples.missing(), float(np.linalg.norm(bias)), disagreement)
+        now = self.live.statistics()
+        self.said.count(now.verdicts)
+        well, status = self.said.text(self.samples.missing(), float(np.linalg.norm(now.bias_N)), now.disagreement)
+        if self.live.failure:
+            well, status = False, f"FAILED: {self.live.failure}"
         if well and self.fault:
             well, status = False, self.fault
         self.status = status
         laid = self.live.laid
-        message = CsaModelerState(status=status, well=well, samples=self.samples.heard, places=self.live.places)
+        message = CsaModelerState(status=status, well=well, samples=self.samples.heard, places=now.places)
         message.header.stamp, message.header.frame_id = rospy.Time.now(), self.frame
         message.learned, message.refused = self.said.learned, self.said.refused
         message.known_share = float(np.isfinite(laid.stiffness_N_m).mean())
-        message.disagreement, message.bent_rms_m = disagreement, self.bent_rms_m
-        vector(message.bias_N, bias)
+        message.disagreement, message.bent_rms_m = now.disagreement, self.bent_rms_m
+        vector(message.bias_N, now.bias_N)
+        self.touched_hz = message.touched_hz = self.pace.rate_hz(now.refreshes)
+        message.oldest_s_p99 = now.waits.quantile_ns(0.99) * 1e-9
+        message.learning_s_p99 = now.learning.quantile_ns(0.99) * 1e-9
+        message.waiting_dropped = now.dropped
         message.region, message.cost, message.cost_error = self.region is not None, self.cost, self.explorer.error
         self._tell_stiffest(message, laid)
         self.state_out.publish(message)
@@ -274,13 +283,17 @@ class CsaModeler(CsaNode):
         return KeepModelResponse(True, f"{request.path}: {len(kept.vertices)} vertices, {known} of them known")
 
     def report(self) -> dict:
-        """What became of the samples."""
+        """What became of the samples, and how fast the map follows."""
+        now = self.live.statistics()
         counts = {f"samples {name}": number for name, number in sorted(self.said.total.items())}
         return {
             "samples": self.status,
             **counts,
-            "waiting_dropped": self.samples.dropped,
-            "places": self.live.places,
+            "waiting_dropped": now.dropped,
+            "places": now.places,
+            "touched_hz": f"{self.touched_hz:.1f}",
+            "oldest_s_p99": f"{now.waits.quantile_ns(0.99) * 1e-9:.3f}",
+            "learning_s_p99": f"{now.learning.quantile_ns(0.99) * 1e-9:.6f}",
             "plans": self.explorer.plans,
             "cost": self.explorer.error or self.cost,
         }
@@ -288,6 +301,9 @@ class CsaModeler(CsaNode):
 
 def _bending(p: Params) -> Bending:
     return Bending(
+        shift_m=p.number("shift_m", 0.0, 1.0),
+        turn_rad=p.number("turn_rad", 1e-4, 3.2),
+        bent_m=p.number("bent_m", 1e-6, 0.1),
         spacing_m=p.number("spacing_m", 1e-3, 0.5),
         strain=p.number("strain", 1e-4, 10.0),
         travel_m=p.number("travel_m", 1e-5, 1.0),

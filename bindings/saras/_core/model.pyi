@@ -985,32 +985,6 @@ class CrossEntropy:
         every deviation is below least_deviation of its first one
         """
 
-class GpLearning:
-    """
-    Result of learn_hyperparameters.
-    """
-    @property
-    def converged(self) -> bool: ...
-    @property
-    def hyperparameters(self) -> GpHyperparameters:
-        """
-        GpHyperparameters
-        """
-    @property
-    def log_likelihood(self) -> float: ...
-    @property
-    def log_likelihood_before(self) -> float:
-        """
-        of all neighbourhoods, without the prior
-        """
-    @property
-    def neighbourhoods(self) -> int: ...
-    @property
-    def samples(self) -> int:
-        """
-        places used, with repetition
-        """
-
 class Deformation:
     """
     How a mesh is bent.
@@ -1079,6 +1053,32 @@ class DeformationGrid:
         (k, 3) [m]
         """
 
+class GpLearning:
+    """
+    Result of learn_hyperparameters.
+    """
+    @property
+    def converged(self) -> bool: ...
+    @property
+    def hyperparameters(self) -> GpHyperparameters:
+        """
+        GpHyperparameters
+        """
+    @property
+    def log_likelihood(self) -> float: ...
+    @property
+    def log_likelihood_before(self) -> float:
+        """
+        of all neighbourhoods, without the prior
+        """
+    @property
+    def neighbourhoods(self) -> int: ...
+    @property
+    def samples(self) -> int:
+        """
+        places used, with repetition
+        """
+
 def estimate_surfaces(grid: HashGrid, config: LocalModelConfig, points: typing.Any, normals: typing.Any = None) -> dict:
     """
     What is known at (n, 3) points [m]: a dict of arrays by the names of SurfaceEstimate. normals: (n, 3) outward, or
@@ -1110,9 +1110,13 @@ def register_rigid(
     max_iterations: typing.SupportsInt | typing.SupportsIndex = 100,
     tolerance_m: typing.SupportsFloat | typing.SupportsIndex = 1e-06,
     most_likely: bool = True,
+    base_T_prior: numpy.typing.ArrayLike = ...,
+    prior_shift_m: typing.SupportsFloat | typing.SupportsIndex = ...,
+    prior_turn_rad: typing.SupportsFloat | typing.SupportsIndex = ...,
 ) -> Registration:
     """
     Iterative most likely point registration (Billings, Boctor, Taylor 2015). points (n, 3) [m] on the surface,
     covariances (n, 3, 3) of their errors [m^2] (None: 1 mm), base_T_mesh (4, 4) to start from. gate: squared deviation
-    above which a point is left out; most_likely=False: plain ICP. Raises ModelError.
+    above which a point is left out; most_likely=False: plain ICP. prior_shift_m, prior_turn_rad: standard deviations of
+    how far from base_T_prior (4, 4) the mesh is believed to lie. Raises ModelError.
     """

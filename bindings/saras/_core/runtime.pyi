@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy
 import numpy.typing
 import saras._core.collision
+import saras._core.model
 import saras._core.net
 import saras._core.pipeline
 import typing
@@ -21,10 +22,14 @@ __all__: list[str] = [
     "HostStatistics",
     "LoopConfig",
     "LoopStatistics",
+    "ModelHost",
+    "ModelHostConfig",
+    "ModelHostStatistics",
     "Pacing",
     "RealtimeReport",
     "RealtimeRequest",
     "TeleopHost",
+    "VertexMapConfig",
     "monotonic_ns",
     "read_flight",
     "replay_flight",
@@ -619,6 +624,248 @@ class FlightReplay:
     def ticks(self) -> int:
         """
         steps
+        """
+
+class VertexMapConfig:
+    """
+    Which vertices share a local model, and when they are asked again.
+    """
+
+    _fields: typing.ClassVar[list] = ["patch_m", "normal_cosine", "move_tolerance_m"]
+    def __copy__(self) -> VertexMapConfig: ...
+    def __deepcopy__(self, arg0: dict) -> VertexMapConfig: ...
+    def __init__(self, **kwargs) -> None:
+        """
+        Which vertices share a local model, and when they are asked again.
+        """
+    def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
+    @property
+    def move_tolerance_m(self) -> float:
+        """
+        a vertex that has moved no further is not asked again [m]
+        """
+    @move_tolerance_m.setter
+    def move_tolerance_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def normal_cosine(self) -> float:
+        """
+        vertices whose normals differ by more share none
+        """
+    @normal_cosine.setter
+    def normal_cosine(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def patch_m(self) -> float:
+        """
+        edge of the cells whose vertices share one [m]
+        """
+    @patch_m.setter
+    def patch_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class ModelHostConfig:
+    """
+    The live map's law, rates and room.
+    """
+
+    _fields: typing.ClassVar[list] = ["law", "vertices", "free_m", "near_m", "touched_hz", "map_hz", "room"]
+    def __copy__(self) -> ModelHostConfig: ...
+    def __deepcopy__(self, arg0: dict) -> ModelHostConfig: ...
+    def __init__(self, **kwargs) -> None:
+        """
+        The live map's law, rates and room.
+        """
+    def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
+    @property
+    def free_m(self) -> float:
+        """
+        so far outside the mesh nothing is touched: the sensor's offset is taken then [m]
+        """
+    @free_m.setter
+    def free_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def law(self) -> saras._core.model.StiffnessGpConfig:
+        """
+        saras.model.StiffnessGpConfig
+        """
+    @law.setter
+    def law(self, arg1: saras._core.model.StiffnessGpConfig) -> None: ...
+    @property
+    def map_hz(self) -> float:
+        """
+        a vertex that is out of date waits for no more than its inverse [1/s]
+        """
+    @map_hz.setter
+    def map_hz(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def near_m(self) -> float:
+        """
+        vertices this near to the tip are asked at touched_hz [m]
+        """
+    @near_m.setter
+    def near_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def room(self) -> int:
+        """
+        samples that may wait to be learned; older ones are dropped and counted
+        """
+    @room.setter
+    def room(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def touched_hz(self) -> float:
+        """
+        [1/s]
+        """
+    @touched_hz.setter
+    def touched_hz(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def vertices(self) -> VertexMapConfig:
+        """
+        VertexMapConfig
+        """
+    @vertices.setter
+    def vertices(self, arg1: VertexMapConfig) -> None: ...
+
+class ModelHostStatistics:
+    """
+    Counters, and how long things took.
+    """
+    @property
+    def asked(self) -> int:
+        """
+        vertices
+        """
+    @property
+    def bias_N(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) the force sensor's offset [N]
+        """
+    @property
+    def disagreement(self) -> float:
+        """
+        mean deviation of the samples from the map [sigma]
+        """
+    @property
+    def dropped(self) -> int:
+        """
+        samples that found no room
+        """
+    @property
+    def learning(self) -> Histogram:
+        """
+        Histogram of one sample
+        """
+    @property
+    def places(self) -> int:
+        """
+        of samples that are remembered
+        """
+    @property
+    def refreshes(self) -> int:
+        """
+        of the vertices near the tip
+        """
+    @property
+    def refreshing(self) -> Histogram:
+        """
+        Histogram of a refresh
+        """
+    @property
+    def stale(self) -> int:
+        """
+        patches out of date
+        """
+    @property
+    def verdicts(self) -> dict:
+        """
+        samples since the last reset, by name of their SampleVerdict
+        """
+    @property
+    def waiting(self) -> int:
+        """
+        samples
+        """
+    @property
+    def waits(self) -> Histogram:
+        """
+        Histogram over refreshes of the longest time that a vertex was out of date
+        """
+
+class ModelHost:
+    """
+    The live map in C++ threads: nobody who brings samples or looks waits for learning.
+    """
+    def __init__(self, prior: saras._core.model.Mesh, config: ModelHostConfig = ...) -> None:
+        """
+        prior: saras.model.Mesh. Raises ConfigError.
+        """
+    def adopt(
+        self,
+        hyperparameters: saras._core.model.GpHyperparameters,
+        generation: typing.SupportsInt | typing.SupportsIndex,
+    ) -> bool:
+        """
+        Takes over hyper-parameters; False as `lay`. Raises ConfigError.
+        """
+    def lay(self, mesh: saras._core.model.Mesh, generation: typing.SupportsInt | typing.SupportsIndex) -> bool:
+        """
+        The mesh lies so from now on. False: all was forgotten since that generation. Raises ModelError.
+        """
+    def learn_waiting(self) -> None:
+        """
+        The learning thread's work, in the caller's thread.
+        """
+    def push(self, stamps: typing.Any, positions: typing.Any, forces: typing.Any, velocities: typing.Any) -> int:
+        """
+        Samples for the learning thread: stamps (n,) [s], (n, 3) tips [m], (n, 3) forces that the tool exerts [N],
+        (n, 3) velocities [m/s]. How many waiting ones were dropped for want of room.
+        """
+    def refresh(self, all: bool = True) -> None:
+        """
+        The refreshing thread's work: all that is out of date, or one turn's share.
+        """
+    def reset(self, prior: saras._core.model.Mesh) -> None:
+        """
+        Forgets what was learned, and begins with this mesh.
+        """
+    def snapshot(self) -> tuple[saras._core.model.HashGrid, saras._core.model.LocalModelConfig, int]:
+        """
+        (a copy of the HashGrid, its LocalModelConfig, generation)
+        """
+    def start(self) -> None:
+        """
+        Starts both threads. Raises Error when they run.
+        """
+    def statistics(self) -> ModelHostStatistics: ...
+    def stop(self) -> None:
+        """
+        After what the threads are at; safe to repeat.
+        """
+    def take_touched(self) -> tuple[saras._core.model.Mesh, numpy.typing.NDArray[numpy.int32], tuple]:
+        """
+        (Mesh, numbers (k,) of the vertices near the tip that were asked since the last call, (stiffness (k,),
+        its deviation (k,))).
+        """
+    def view(self) -> tuple[saras._core.model.Mesh, tuple, int]:
+        """
+        (Mesh, (stiffness (n,) [N/m], its deviation (n,)), generation); NaN and infinite: not known.
+        """
+    def wait_touched(self, timeout_s: typing.SupportsFloat | typing.SupportsIndex) -> bool:
+        """
+        Until there is something for take_touched; False: there was nothing in timeout_s.
+        """
+    @property
+    def config(self) -> ModelHostConfig: ...
+    @property
+    def failure(self) -> str:
+        """
+        why a thread ended by itself; empty when none did
         """
 
 def monotonic_ns() -> int:

@@ -1,9 +1,13 @@
-"""A map that is learned, looked at and laid anew by several threads at once: learning waits for nobody for long."""
+"""A map that is learned, looked at and laid anew by several threads at once: learning waits for nobody for long.
+
+The threads that learn and that ask what is known are C++ (saras.runtime.ModelHost); bending, hyper-parameters and plans
+are computed without the GIL in whatever thread calls for them.
+"""
 
 from __future__ import annotations
 
-import threading
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -11,12 +15,15 @@ import numpy.typing as npt
 from saras._core import model as _core
 from saras.model.learning import learn_hyperparameters
 from saras.model.region import Region
-from saras.model.registering import DeformationGrid, Mesh
+from saras.model.registering import DeformationGrid, Mesh, register_rigid
 from saras.model.stiffness_map import SurfaceEstimates
 from saras.model.storage import StiffMesh
+from saras.runtime import ModelHost, ModelHostConfig
+
+if TYPE_CHECKING:
+    from saras.runtime import ModelHostStatistics
 
 Array = npt.NDArray[np.float64]
-VERDICTS = {int(value): name for name, value in _core.SampleVerdict.__members__.items()}
 
 
 @dataclass(frozen=True)
@@ -36,8 +43,14 @@ class Snapshot:
 
 @dataclass(frozen=True)
 class Bending:
-    """How the prior mesh is laid to what was touched."""
+    """How the prior mesh is laid to what was touched: first as a whole, then bent."""
 
+    shift_m: float = 0.005
+    """standard deviation of how far off the prior lies as a whole, each axis; 0: it is bent only"""
+    turn_rad: float = 0.1
+    """the same of its orientation"""
+    bent_m: float = 2e-3
+    """standard deviation of how far it is bent, alike for places nearer than spacing_m"""
     spacing_m: float = 0.02
     """between the corners that carry displacements"""
     strain: float = 0.1
@@ -78,140 +91,116 @@ class Laid:
         return best if np.isfinite(surely[best]) else None
 
 
-class LiveMap:
-    """prior: the coarse mesh in the base frame. One thread may learn, others refresh, bend, plan and look.
+@dataclass(frozen=True)
+class Touched:
+    """Vertices near the tip, as they are known now."""
 
-    free_m: the tip is believed to touch nothing when it is so far outside the mesh; the sensor's offset is taken then.
+    indices: npt.NDArray[np.int32]
+    vertices: Array
+    """(k, 3) base frame [m]"""
+    stiffness_N_m: Array
+    stiffness_std_N_m: Array
+
+
+@dataclass(frozen=True)
+class _Lying:
+    """Where the prior lies as a whole, and how it is bent from there."""
+
+    prior: Mesh
+    grid: DeformationGrid
+    base_T_prior: Array
+    displacements: Array | None
+
+
+class LiveMap:
+    """prior: the coarse mesh in the base frame. config: law, rates and room; refused numbers raise ConfigError.
+
+    Until start() nothing runs by itself: learn() and refresh() work in the caller's thread.
     """
 
-    def __init__(
-        self,
-        prior: Mesh,
-        config: _core.StiffnessGpConfig | None = None,
-        bending: Bending | None = None,
-        *,
-        free_m: float = 5e-3,
-    ) -> None:
-        self.config = _core.StiffnessGpConfig() if config is None else config
+    def __init__(self, prior: Mesh, config: ModelHostConfig | None = None, bending: Bending | None = None) -> None:
+        self.config = ModelHostConfig() if config is None else config
         self.bending = Bending() if bending is None else bending
-        self._law = _core.StiffnessGp(self.config)
-        self._learning, self._showing = threading.Lock(), threading.Lock()
-        self._free_m = free_m
-        self._generation = 0
-        self._take(prior, None)
+        self._host = ModelHost(prior, self.config)
+        self._begin(prior, None)
 
-    def _take(self, prior: Mesh, known: StiffMesh | None) -> None:
-        vertices = prior.vertices
-        count = len(vertices)
-        self._generation += 1
-        self._base = (
-            (np.full(count, np.nan), np.full(count, np.inf))
-            if known is None
-            else (known.stiffness_N_m, known.stiffness_std_N_m)
-        )
-        self._grid = DeformationGrid(prior, self.bending.spacing_m)
-        self._displacements: Array | None = None
-        self._laid = Laid(
-            prior, vertices, prior.vertex_normals, self._base[0].copy(), self._base[1].copy(), self._generation
-        )
-        self._prior = prior
+    def _begin(self, prior: Mesh, known: StiffMesh | None) -> None:
+        base = None if known is None else (known.stiffness_N_m, known.stiffness_std_N_m)
+        self._base = (self._host.view()[2], base)
+        self._lying = _Lying(prior, DeformationGrid(prior, self.bending.spacing_m), np.eye(4), None)
+
+    def start(self) -> None:
+        """Starts the C++ threads. Raises Error when they run."""
+        self._host.start()
+
+    def stop(self) -> None:
+        """After what the threads are at; safe to repeat."""
+        self._host.stop()
 
     # ---- learning
 
-    def learn(self, positions: Array, forces: Array, velocities: Array, dt: float) -> dict[str, int]:
-        """Samples in their order, dt [s] apart: (n, 3) [m], [N], [m/s]. How many met which SampleVerdict."""
-        free = self._is_free(positions)
-        said: dict[str, int] = {}
-        with self._learning:
-            for begin, end in _runs(free):
-                part = slice(begin, end)
-                if free[begin]:
-                    belief = _core.TouchBelief.FREE
-                    samples = zip(positions[part], forces[part], velocities[part])
-                    verdicts = [int(self._law.step(x, f, dt, v, belief).verdict) for x, f, v in samples]
-                else:
-                    verdicts = self._law.steps(positions[part], forces[part], dt, velocities[part])[0].tolist()
-                for verdict in verdicts:
-                    said[VERDICTS[verdict]] = said.get(VERDICTS[verdict], 0) + 1
-        return said
+    def push(self, stamps: Array, positions: Array, forces: Array, velocities: Array) -> int:
+        """Samples for the learning thread: (n,) [s], (n, 3) [m], [N], [m/s]. How many waiting ones were dropped."""
+        return self._host.push(stamps, positions, forces, velocities)
 
-    def _is_free(self, positions: Array) -> npt.NDArray[np.bool_]:
-        laid = self._laid
-        finite = np.isfinite(positions).all(1)
-        at = np.where(finite[:, None], positions, 0.0)
-        closest, triangles = laid.mesh.closest(at)[:2]
-        corners = laid.vertices[laid.mesh.triangles[np.asarray(triangles)]]
-        normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-        free: npt.NDArray[np.bool_] = finite & (((at - closest) * normal).sum(1) > self._free_m)
-        return free
+    def learn(self, stamps: Array, positions: Array, forces: Array, velocities: Array) -> dict[str, int]:
+        """Learns samples in this thread. How many met which SampleVerdict."""
+        before = self.statistics().verdicts
+        room = self.config.room
+        for begin in range(0, len(stamps), room):
+            part = slice(begin, begin + room)
+            self._host.push(stamps[part], positions[part], forces[part], velocities[part])
+            self._host.learn_waiting()
+        after = self.statistics().verdicts
+        return {name: n - before[name] for name, n in after.items() if n > before[name]}
+
+    def statistics(self) -> ModelHostStatistics:
+        """Counters, the sensor's offset, and how long things took."""
+        return self._host.statistics()
+
+    @property
+    def failure(self) -> str:
+        """Why a thread ended by itself; empty: none did."""
+        return self._host.failure
 
     def learn_hyperparameters(self) -> _core.GpLearning:
         """From what was learned; takes them over. Raises ModelError when there is too little."""
-        learned = learn_hyperparameters(self.snapshot().grid, self.config.local)
-        with self._learning:
-            self._law.adopt(learned.hyperparameters)
+        snapshot = self.snapshot()
+        learned = learn_hyperparameters(snapshot.grid, self.config.law.local)
+        self._host.adopt(learned.hyperparameters, snapshot.generation)
         return learned
 
     def snapshot(self) -> Snapshot:
         """A copy; learning waits as long as it takes."""
-        with self._learning:
-            return Snapshot(self._law.state.grid, self._law.config.local, self._generation)
-
-    @property
-    def places(self) -> int:
-        """Of samples that are remembered."""
-        return len(self._law.grid)
-
-    def sensor(self) -> tuple[Array, float]:
-        """The force sensor's offset (3,) [N], the samples' mean deviation from the map [sigma]. Copies the map."""
-        with self._learning:
-            state = self._law.state
-        return np.array(state.bias_N), float(state.disagreement)
+        return Snapshot(*self._host.snapshot())
 
     # ---- looking
 
     @property
     def laid(self) -> Laid:
-        """The mesh now; its arrays are replaced, never written to."""
-        return self._laid
+        """The mesh now, and what is known at its vertices."""
+        generation_of_base, base = self._base
+        mesh, (stiffness, std), generation = self._host.view()
+        if base is not None and generation_of_base == generation:
+            unknown = np.isnan(stiffness)
+            stiffness, std = np.where(unknown, base[0], stiffness), np.where(unknown, base[1], std)
+        return Laid(mesh, mesh.vertices, mesh.vertex_normals, stiffness, std, generation)
 
-    def refresh(self, snapshot: Snapshot, indices: npt.NDArray[np.intp] | None = None) -> Laid:
-        """Asks the snapshot at the vertices of indices; None: at all of them."""
-        before = self._laid
-        if snapshot.generation != before.generation:
-            return before
-        at = slice(None) if indices is None else indices
-        found = snapshot.estimate(before.vertices[at], normals=before.normals[at])
-        known = found.known
-        with self._showing:
-            laid = self._laid
-            if before.generation != laid.generation:
-                return laid  # all of it was forgotten meanwhile
-            stiffness, std = laid.stiffness_N_m.copy(), laid.stiffness_std_N_m.copy()
-            stiffness[at] = np.where(known, found.stiffness_N_m, self._base[0][at])
-            std[at] = np.where(known, found.stiffness_std_N_m, self._base[1][at])
-            self._laid = Laid(laid.mesh, laid.vertices, laid.normals, stiffness, std, laid.generation)
-            return self._laid
+    def refresh(self) -> Laid:
+        """Asks all that is out of date, in this thread."""
+        self._host.refresh()
+        return self.laid
 
-    def refresh_near(self, positions: Array, radius_m: float) -> npt.NDArray[np.intp]:
-        """Asks what is learned at this moment, at the vertices within radius_m of (n, 3) positions; their indices."""
-        with self._learning:  # the grid must not change meanwhile
-            indices = self.near(positions, radius_m)
-            if len(indices):
-                self.refresh(Snapshot(self._law.grid, self._law.config.local, self._generation), indices)
-        return indices
-
-    def near(self, positions: Array, radius_m: float) -> npt.NDArray[np.intp]:
-        """Indices of the vertices within radius_m of any of (n, 3) positions."""
-        vertices, near = self._laid.vertices, np.zeros(len(self._laid.vertices), dtype=bool)
-        for position in positions:
-            near |= ((vertices - position) ** 2).sum(1) < radius_m**2
-        return np.flatnonzero(near)
+    def wait_touched(self, timeout_s: float) -> Touched | None:
+        """The vertices near the tip that were asked since the last call; None: there were none in timeout_s."""
+        if not self._host.wait_touched(timeout_s):
+            return None
+        mesh, indices, (stiffness, std) = self._host.take_touched()
+        return Touched(indices, mesh.vertices[indices], stiffness, std)
 
     # ---- where the mesh lies
 
-    def touched(self, snapshot: Snapshot) -> tuple[Array, Array]:
+    def touched_surface(self, snapshot: Snapshot) -> tuple[Array, Array]:
         """(n, 3) points of the undisturbed surface under what was touched [m], and (n, 3, 3) covariances [m^2]."""
         b = self.bending
         places = snapshot.grid.samples[0]
@@ -229,58 +218,72 @@ class LiveMap:
 
         Raises ModelError when what was touched cannot be met; the mesh then lies as before.
         """
-        points, covariances = self.touched(snapshot)
+        points, covariances = self.touched_surface(snapshot)
         if len(points) < self.bending.min_points:
             return None
-        with self._showing:
-            laid, grid, start = self._laid, self._grid, self._displacements
-        if snapshot.generation != laid.generation:
+        lying = self._lying
+        mesh, _, generation = self._host.view()
+        if snapshot.generation != generation:
             return None
         # What the points' noise does not explain is how far the mesh is off: it must not fail the gate.
-        off = float(np.median(laid.mesh.closest(points)[3]))
-        bent = grid.deform(
-            points,
-            covariances + np.eye(3) * off,
-            strain=self.bending.strain,
-            travel_m=self.bending.travel_m,
-            start=start,
+        wide = covariances + np.eye(3) * float(np.median(mesh.closest(points)[3]))
+        b, base_T_prior = self.bending, lying.base_T_prior
+        if b.shift_m > 0.0:
+            # What is bent is no noise: places near each other are off alike, and count as one.
+            alone = len(np.unique(np.floor(points / b.spacing_m), axis=0))
+            bent_as_noise = np.eye(3) * b.bent_m**2 * len(points) / alone
+            rigid = register_rigid(
+                lying.prior,
+                points,
+                wide + bent_as_noise,
+                base_T_prior,
+                prior_shift_m=b.shift_m,
+                prior_turn_rad=b.turn_rad,
+            )
+            base_T_prior = np.asarray(rigid.base_T_mesh)
+            if not rigid.converged or not self._believable(base_T_prior, points):
+                base_T_prior = lying.base_T_prior
+        bent = lying.grid.deform(
+            points, wide, base_T_prior, strain=b.strain, travel_m=b.travel_m, start=lying.displacements
         )
-        mesh = Mesh(bent.vertices, laid.mesh.triangles)
-        with self._showing:
-            now = self._laid
-            if laid.generation != now.generation:
-                return None  # all of it was forgotten meanwhile
-            self._displacements = bent.displacements
-            known = now.stiffness_N_m, now.stiffness_std_N_m
-            self._laid = Laid(mesh, mesh.vertices, mesh.vertex_normals, *known, now.generation)
+        vertices = bent.vertices @ base_T_prior[:3, :3].T + base_T_prior[:3, 3]
+        if not self._host.lay(Mesh(vertices, lying.prior.triangles), generation):
+            return None  # all of it was forgotten meanwhile
+        if self._lying is lying:
+            self._lying = replace(lying, base_T_prior=base_T_prior, displacements=bent.displacements)
         return float(bent.rms_m)
+
+    def _believable(self, base_T_prior: Array, points: Array) -> bool:
+        """Not further off than four deviations of what is believed, where it was touched."""
+        middle = points.mean(0)
+        off = base_T_prior[:3, :3] @ middle + base_T_prior[:3, 3] - middle
+        cosine = 0.5 * (np.trace(base_T_prior[:3, :3]) - 1.0)
+        turn = float(np.arccos(np.clip(cosine, -1.0, 1.0)))
+        return bool(np.linalg.norm(off) < 4.0 * self.bending.shift_m and turn < 4.0 * self.bending.turn_rad)
+
+    @property
+    def base_T_prior(self) -> Array:
+        """(4, 4): where the prior lies as a whole, before it is bent."""
+        return self._lying.base_T_prior
 
     # ---- kept
 
     def reset(self) -> None:
         """Forgets what was touched and what was loaded; the mesh lies as at the start."""
-        with self._learning, self._showing:
-            self._law.reset()
-            self._take(self._prior, None)
+        prior = self._lying.prior
+        self._host.reset(prior)
+        self._begin(prior, None)
 
     def stiff_mesh(self) -> StiffMesh:
         """To be kept in a file."""
-        laid = self._laid
+        laid = self.laid
         return StiffMesh(laid.vertices, laid.mesh.triangles, laid.stiffness_N_m, laid.stiffness_std_N_m)
 
     def take(self, kept: StiffMesh) -> None:
         """The kept map is the prior from now on: shown where nothing is touched. What was touched is forgotten."""
         prior = Mesh(kept.vertices, kept.triangles)
-        with self._learning, self._showing:
-            self._law.reset()
-            self._take(prior, kept)
-
-
-def _runs(flags: npt.NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """(begin, end) of the stretches of equal flags."""
-    edges = np.flatnonzero(np.diff(flags)) + 1
-    bounds = [0, *edges.tolist(), len(flags)]
-    return [(a, b) for a, b in zip(bounds, bounds[1:]) if b > a]
+        self._host.reset(prior)
+        self._begin(prior, kept)
 
 
 def refine(mesh: Mesh, vertices: int) -> Mesh:
@@ -298,4 +301,4 @@ def refine(mesh: Mesh, vertices: int) -> Mesh:
         triangles = np.concatenate([np.column_stack(part) for part in parts]).astype(np.int32)
 
 
-__all__ = ["VERDICTS", "Bending", "Laid", "LiveMap", "Snapshot", "refine"]
+__all__ = ["Bending", "Laid", "LiveMap", "Snapshot", "Touched", "refine"]

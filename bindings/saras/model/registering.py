@@ -3,30 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from saras._core.model import Mesh, Registration, register_rigid
-
-if TYPE_CHECKING:
-    from saras._core.model import Deformation, DeformationGrid
-else:
-    try:
-        from saras._core.model import Deformation, DeformationGrid
-    except ImportError:
-
-        class _Missing:
-            """Names the package at the first use: the rest of saras.model works without it."""
-
-            def __call__(self, *arguments: Any, **named: Any) -> Any:
-                raise ImportError(
-                    "DeformationGrid: saras was built without Ceres; install it (apt-get install libceres-dev) and "
-                    "build again"
-                )
-
-        Deformation = DeformationGrid = _Missing()
+from saras._core.model import Deformation, DeformationGrid, Mesh, Registration, register_rigid
 
 Array = npt.NDArray[np.float64]
 

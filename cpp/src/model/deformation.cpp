@@ -1,87 +1,43 @@
 #include "saras/model/deformation.hpp"
 
-#include <ceres/ceres.h>
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
+#include "deformation_equations.hpp"
 #include "saras/model/model_error.hpp"
 #include "saras/spatial/validate.hpp"
 
 namespace saras {
 namespace {
 
-/// whitening (target - sum of weights * displacements): linear, with as many blocks as the point has corners.
-class PointCost : public ceres::CostFunction {
- public:
-  PointCost(const Eigen::Matrix3d& whitening, const Vector3& target,
-            std::vector<std::pair<std::int32_t, double>> weights)
-      : whitening_(whitening), target_(target), weights_(std::move(weights)) {
-    set_num_residuals(3);
-    mutable_parameter_block_sizes()->assign(weights_.size(), 3);
-  }
-
-  bool Evaluate(double const* const* displacements, double* residuals, double** jacobians) const override {
-    Vector3 left = target_;
-    for (std::size_t i = 0; i < weights_.size(); ++i) {
-      left -= weights_[i].second * Eigen::Map<const Vector3>(displacements[i]);
-      if (jacobians != nullptr && jacobians[i] != nullptr) {
-        Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>{jacobians[i]} = -weights_[i].second * whitening_;
-      }
-    }
-    Eigen::Map<Vector3>{residuals} = whitening_ * left;
-    return true;
-  }
-
- private:
-  Eigen::Matrix3d whitening_;
-  Vector3 target_;
-  std::vector<std::pair<std::int32_t, double>> weights_;
-};
-
-/// (a - b) / deviation, or a / deviation alone.
-class PriorCost : public ceres::CostFunction {
- public:
-  PriorCost(double deviation_m, bool pair) : inverse_(1.0 / deviation_m) {
-    set_num_residuals(3);
-    mutable_parameter_block_sizes()->assign(pair ? 2 : 1, 3);
-  }
-
-  bool Evaluate(double const* const* displacements, double* residuals, double** jacobians) const override {
-    Eigen::Map<Vector3> left(residuals);
-    left.setZero();
-    for (std::size_t i = 0; i < parameter_block_sizes().size(); ++i) {
-      const double sign = i == 0 ? inverse_ : -inverse_;
-      left += sign * Eigen::Map<const Vector3>(displacements[i]);
-      if (jacobians != nullptr && jacobians[i] != nullptr) {
-        Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>{jacobians[i]} = sign * Eigen::Matrix3d::Identity();
-      }
-    }
-    return true;
-  }
-
- private:
-  double inverse_;
-};
-
-/// A share of a match's whole weight, so that it does not slide along the surface without bound.
+/// A share of a match's whole weight, so that it does not slide along the surface without bound. It shrinks from round
+/// to round: then the smoothness alone says how the surface slid, and the way there is short.
 constexpr double kSticking = 0.05;
+constexpr double kStickingShrinks = 0.6;
+constexpr double kLeastSticking = 1e-3;
+/// Share by which the mean squared deviation may still change.
+constexpr double kSettled = 5e-3;
 /// Rounds in which the gate is open: the mesh is not bent yet.
 constexpr int kOpenRounds = 2;
 
-Eigen::Matrix3d whitening_of(const Eigen::Matrix3d& information, const Vector3& normal) {
-  const double across = normal.dot(information.inverse() * normal);
-  const Eigen::Matrix3d weight = kSticking * information + (1.0 - kSticking) / across * normal * normal.transpose();
-  return weight.llt().matrixU();
+/// What a match says of its point: all of it across the surface, little along it.
+Eigen::Matrix3d information_of(const Eigen::Matrix3d& covariance, const Vector3& normal, double sticking) {
+  const double across = normal.dot(covariance * normal);
+  return sticking * covariance.inverse() + (1.0 - sticking) / across * normal * normal.transpose();
 }
 
 class Bending {
  public:
   Bending(const SurfaceMesh& mesh, const DeformationGrid& grid, const std::vector<SurfacePoint>& points,
           const Pose& base_T_mesh, const DeformationOptions& options, std::vector<Vector3> start)
-      : mesh_(mesh), grid_(grid), options_(options), bent_(mesh), tree_(bent_), matches_(points.size()) {
+      : mesh_(mesh),
+        grid_(grid),
+        options_(options),
+        bent_(mesh),
+        tree_(bent_),
+        equations_(mesh, grid, options.strain * options.spacing_m, options.travel_m),
+        matches_(points.size()) {
     const Pose mesh_T_base = base_T_mesh.inverse();
     const Eigen::Matrix3d rotation = mesh_T_base.rotation.toRotationMatrix();
     for (const SurfacePoint& point : points) {
@@ -96,11 +52,14 @@ class Bending {
 
   Deformation settle() {
     while (result_.rounds < options_.max_rounds && !result_.converged) {
+      const double before = deviation_;
       match();
       solve();
       const double moved_m = move();
       ++result_.rounds;
-      result_.converged = (warm_ || result_.rounds > kOpenRounds) && moved_m < options_.tolerance_m;
+      // Matches may change triangles for ever: it is the surface that must settle, not each vertex on it.
+      const bool as_near = std::abs(deviation_ - before) <= kSettled * before;
+      result_.converged = (warm_ || result_.rounds > kOpenRounds) && (as_near || moved_m < options_.tolerance_m);
     }
     double sum = 0.0;
     double count = 0.0;
@@ -117,19 +76,21 @@ class Bending {
  private:
   void match() {
     const bool open = !warm_ && result_.rounds < kOpenRounds;
+    double sum = 0.0;
+    double count = 0.0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
       matches_[i] = tree_.likely(points_[i].position, points_[i].covariance.inverse(), matches_[i].triangle);
       result_.used[i] = open || matches_[i].squared <= options_.gate;
+      sum += result_.used[i] ? matches_[i].squared : 0.0;
+      count += result_.used[i] ? 1.0 : 0.0;
     }
+    deviation_ = sum / std::max(1.0, count);
   }
 
   void solve() {
-    ceres::Problem::Options ownership;
-    ownership.enable_fast_removal = false;
-    ceres::Problem problem(ownership);
-    const auto block = [&](std::int32_t corner) {
-      return result_.displacements[static_cast<std::size_t>(corner)].data();
-    };
+    equations_.restart();
+    const double sticking =
+        warm_ ? kLeastSticking : std::max(kLeastSticking, kSticking * std::pow(kStickingShrinks, result_.rounds));
     for (std::size_t i = 0; i < points_.size(); ++i) {
       if (!result_.used[i]) {
         continue;
@@ -140,32 +101,13 @@ class Bending {
         unbent += matches_[i].barycentric[static_cast<Eigen::Index>(k)] *
                   mesh_.vertices[static_cast<std::size_t>(triangle[k])];
       }
-      auto weights = grid_.weights(triangle, matches_[i].barycentric);
-      std::vector<double*> blocks;
-      blocks.reserve(weights.size());
-      for (const auto& [corner, weight] : weights) {
-        blocks.push_back(block(corner));
-      }
-      const Eigen::Matrix3d whitening =
-          whitening_of(points_[i].covariance.inverse(), tree_.normal(matches_[i].triangle));
-      problem.AddResidualBlock(new PointCost(whitening, points_[i].position - unbent, std::move(weights)), nullptr,
-                               blocks);
+      equations_.add(grid_.weights(triangle, matches_[i].barycentric),
+                     information_of(points_[i].covariance, tree_.normal(matches_[i].triangle), sticking),
+                     points_[i].position - unbent);
     }
-    for (const auto& pair : grid_.neighbours()) {
-      problem.AddResidualBlock(new PriorCost(options_.strain * options_.spacing_m, true), nullptr, block(pair[0]),
-                               block(pair[1]));
+    if (!equations_.solve(result_.displacements)) {
+      throw ModelError("points: their covariances and travel_m, strain are too far apart to be weighed together");
     }
-    for (std::size_t corner = 0; corner < grid_.corners(); ++corner) {
-      problem.AddResidualBlock(new PriorCost(options_.travel_m, false), nullptr,
-                               block(static_cast<std::int32_t>(corner)));
-    }
-    ceres::Solver::Options solver;
-    solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-    solver.max_num_iterations = 3;  // linear: the first one is the solution but for the trust region
-    solver.initial_trust_region_radius = 1e12;
-    solver.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(solver, &problem, &summary);
   }
 
   /// Takes the displacements over; returns how far the farthest vertex moves.
@@ -186,9 +128,11 @@ class Bending {
   const DeformationOptions& options_;
   SurfaceMesh bent_;
   MeshTree tree_;
+  DeformationEquations equations_;
   std::vector<SurfacePoint> points_;  ///< in the mesh's frame
   std::vector<MeshMatch> matches_;
   bool warm_ = false;
+  double deviation_ = 0.0;  ///< mean squared deviation of the used points from the mesh, before the last step
   Deformation result_;
 };
 

@@ -54,6 +54,7 @@ bool LocalModel::take(const HashGrid& grid, int place) noexcept {
 
 bool LocalModel::build(const HashGrid& grid, const Vector3& around, const Vector3* normal) noexcept {
   clear();
+  reach_m_ = config_.radius_m;
   const int count = grid.within(around, config_.radius_m, found_.data(), static_cast<int>(found_.size()));
   if (count < config_.min_samples) {
     return false;
@@ -79,6 +80,9 @@ bool LocalModel::build(const HashGrid& grid, const Vector3& around, const Vector
     return a.distance < b.distance || (a.distance == b.distance && a.place < b.place);
   };
   std::nth_element(candidates_.begin(), candidates_.begin() + taken - 1, candidates_.begin() + count, nearer);
+  if (taken < count) {
+    reach_m_ = std::sqrt(candidates_[static_cast<std::size_t>(taken) - 1].distance);
+  }
   Vector3 middle = Vector3::Zero();
   for (int i = 0; i < taken; ++i) {
     middle += grid.place(candidates_[static_cast<std::size_t>(i)].place).position / taken;

@@ -194,4 +194,7 @@ MeshMatch MeshTree::likely(const Vector3& point, const Eigen::Matrix3d& informat
   return best;
 }
 
+IndexedMesh::IndexedMesh(SurfaceMesh given)
+    : mesh((given.validate(), std::move(given))), tree(mesh), normals(mesh.vertex_normals()) {}
+
 }  // namespace saras

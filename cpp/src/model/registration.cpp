@@ -108,6 +108,7 @@ class Run {
         add(i, hessian, gradient);
       }
     }
+    add_prior(hessian, gradient);
     hessian.diagonal().array() += 1e-12 * hessian.trace();
     const Vector6 step = hessian.ldlt().solve(gradient);
     const Quaternion turn = rotation_exp(step.tail<3>());
@@ -121,16 +122,31 @@ class Run {
     const Vector3 on_mesh = result_.base_T_mesh * result_.matches[i].point;
     Eigen::Matrix<double, 3, 6> jacobian;  // of on_mesh
     jacobian << Eigen::Matrix3d::Identity(), -cross_matrix(on_mesh - middle_);
-    gradient += jacobian.transpose() * information_[i] * (points_[i].position - on_mesh);
     Eigen::Matrix3d curvature = information_[i];
     if (options_.most_likely) {
       // The match slides along the surface with the pose: only what lies across it resists. A share of the whole keeps
-      // steps short where the surface bends. The gradient, and so the place where it settles, is the same.
+      // steps short where the surface bends. The pull is that of the whole, as a match's residual lies across the
+      // surface in the metric; but at the border of an open mesh, where it would pull the mesh along.
       const Vector3 normal = normal_of(i);
       const double across = normal.dot(information_[i].inverse() * normal);
-      curvature = kSticking * information_[i] + (1.0 - kSticking) / across * normal * normal.transpose();
+      const double sticking = sticking_share();
+      curvature = sticking * information_[i] + (1.0 - sticking) / across * normal * normal.transpose();
     }
+    gradient += jacobian.transpose() * curvature * (points_[i].position - on_mesh);
     hessian += jacobian.transpose() * curvature * jacobian;
+  }
+
+  void add_prior(Matrix6& hessian, Vector6& gradient) const {
+    const PosePrior& prior = options_.prior;
+    const Pose& pose = result_.base_T_mesh;
+    Vector6 weight;  // zero for infinite deviations
+    weight << Vector3::Constant(1.0 / (prior.shift_m * prior.shift_m)),
+        Vector3::Constant(1.0 / (prior.turn_rad * prior.turn_rad));
+    Vector6 back;  // from where it is to where it is believed to be, of the mesh's point in the points' middle
+    back << prior.base_T_mesh * (pose.inverse() * middle_) - middle_,
+        rotation_log(prior.base_T_mesh.rotation * pose.rotation.conjugate());
+    hessian.diagonal() += weight;
+    gradient += weight.cwiseProduct(back);
   }
 
   void finish() {
@@ -147,6 +163,8 @@ class Run {
       count += 1.0;
     }
     result_.rms_m = count > 0.0 ? std::sqrt(sum / count) : 0.0;
+    Vector6 unused = Vector6::Zero();
+    add_prior(hessian, unused);
     hessian.diagonal().array() += 1e-12 * hessian.trace();
     result_.covariance = hessian.inverse();
   }
@@ -160,7 +178,13 @@ class Run {
     hessian += row * row.transpose() / variance;
   }
 
-  static constexpr double kSticking = 0.1;
+  /// Where a prior holds what the points leave open, sticking would only make the way to it long.
+  double sticking_share() const {
+    constexpr double kSticking = 0.1;
+    const bool held = std::isfinite(options_.prior.shift_m) && std::isfinite(options_.prior.turn_rad);
+    return held ? kSticking * std::pow(0.6, result_.iterations) : kSticking;
+  }
+
   const MeshTree& tree_;
   const std::vector<SurfacePoint>& points_;
   const RegistrationOptions& options_;
@@ -202,6 +226,13 @@ void check_surface_points(const SurfaceMesh& mesh, const std::vector<SurfacePoin
 void RegistrationOptions::validate() const {
   validate::positive("gate", gate);
   validate::not_negative("mesh_noise_m", mesh_noise_m);
+  validate::pose("prior.base_T_mesh", prior.base_T_mesh);
+  if (!std::isinf(prior.shift_m)) {
+    validate::positive("prior.shift_m", prior.shift_m);
+  }
+  if (!std::isinf(prior.turn_rad)) {
+    validate::positive("prior.turn_rad", prior.turn_rad);
+  }
   validate::in_range("max_iterations", max_iterations, 1, 100'000);
   validate::positive("tolerance_m", tolerance_m);
 }

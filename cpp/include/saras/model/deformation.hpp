@@ -1,4 +1,4 @@
-// How a mesh is bent, from points measured on it: displacements on a sparse grid around it. Needs Ceres.
+// How a mesh is bent, from points measured on it: displacements on a sparse grid around it.
 //
 // The mesh is enclosed in cubes; only those that hold a vertex have corners in the grid. A vertex moves by the
 // trilinear mean of its cube's corners, so that a few hundred unknowns move ten thousand vertices. Points are matched
@@ -19,7 +19,7 @@ struct DeformationOptions {
   double travel_m = 0.05;     ///< standard deviation of a corner's displacement [m]
   double gate = 7.81;         ///< squared deviation above which a point is left out
   int max_rounds = 20;        ///< of matching and solving
-  double tolerance_m = 2e-5;  ///< settled: no vertex moves more than this
+  double tolerance_m = 2e-5;  ///< settled: no vertex moves more than this, or the points are as near as before
   void validate() const;      ///< throws ConfigError
 };
 

@@ -68,6 +68,8 @@ class LocalModel {
   /// The sample as the process takes it: normal force of tissue at rest, as far as its damping is known.
   GpSample process_sample(const TouchSample& sample) const noexcept;
   bool usable() const { return process_.size() >= config_.min_samples; }
+  /// Of the last build(): places further than this across the surface would not have been taken [m].
+  double reach_m() const { return reach_m_; }
   const Vector3& center() const { return center_; }
   const Vector3& normal() const { return process_.normal(); }
   const LocalGp& process() const { return process_; }
@@ -82,6 +84,7 @@ class LocalModel {
   LocalModelConfig config_;
   LocalGp process_;
   Vector3 center_ = Vector3::Zero();
+  double reach_m_ = 0.0;
   std::vector<int> members_;  ///< places, in the order of the process
   struct Candidate {
     double distance;

@@ -6,6 +6,7 @@
 // misalignment itself is noise: the mean squared distance of the matches is added to every covariance.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "saras/model/surface_mesh.hpp"
@@ -19,11 +20,20 @@ struct SurfacePoint {
   Eigen::Matrix3d covariance = 1e-6 * Eigen::Matrix3d::Identity();  ///< of its error, base frame [m^2]
 };
 
+/// What is believed of a pose before anything is measured; infinite deviations: nothing.
+struct PosePrior {
+  Pose base_T_mesh;
+  double shift_m =
+      std::numeric_limits<double>::infinity();  ///< standard deviation at the points' middle, each axis [m]
+  double turn_rad = std::numeric_limits<double>::infinity();  ///< of its rotation, each axis [rad]
+};
+
 struct RegistrationOptions {
   double gate = 7.81;         ///< squared deviation above which a point is left out (95 % of three normal values)
   double mesh_noise_m = 0.0;  ///< standard deviation of the mesh's own error, each axis [m]
   int max_iterations = 100;
   double tolerance_m = 1e-6;  ///< settled: the mesh's points move less than this
+  PosePrior prior;            ///< holds what the points leave open: a mesh slides along a smooth patch unseen
   bool most_likely = true;    ///< false: closest points, all weights equal: ICP (Besl and McKay 1992), for comparison
   void validate() const;      ///< throws ConfigError
 };

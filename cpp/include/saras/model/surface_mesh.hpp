@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "saras/spatial/types.hpp"
@@ -63,5 +64,16 @@ class MeshTree {
   std::vector<Node> nodes_;
   std::vector<std::int32_t> order_;
 };
+
+/// A valid mesh with what is derived from it. Nobody changes it: threads may share it.
+struct IndexedMesh {
+  explicit IndexedMesh(SurfaceMesh given);  ///< throws ModelError
+  IndexedMesh(const IndexedMesh&) = delete;
+  IndexedMesh& operator=(const IndexedMesh&) = delete;
+  const SurfaceMesh mesh;
+  const MeshTree tree;
+  const std::vector<Vector3> normals;  ///< of the vertices
+};
+using IndexedMeshPointer = std::shared_ptr<const IndexedMesh>;
 
 }  // namespace saras
