@@ -9,9 +9,12 @@ hours); the timed fit keeps them.
 
 from __future__ import annotations
 
+import subprocess
 import sys
+import tempfile
 import time
 import warnings
+from pathlib import Path
 
 import numpy as np
 
@@ -138,8 +141,8 @@ def error_rows(samples: int, ours: StiffnessMap, theirs) -> list[dict]:
     return rows
 
 
-def run(peer_samples=PEER_SAMPLES, our_samples=OURS_SAMPLES) -> list[dict]:
-    """All rows of the group."""
+def run(heavy_python: Path | None = None, peer_samples=PEER_SAMPLES, our_samples=OURS_SAMPLES) -> list[dict]:
+    """All rows of what is learned. heavy_python: of the environment that has GPyTorch; None: without it."""
     try:
         import sklearn  # noqa: F401
     except ImportError:
@@ -158,6 +161,8 @@ def run(peer_samples=PEER_SAMPLES, our_samples=OURS_SAMPLES) -> list[dict]:
             fitted.predict(1e3 * recorded.positions[-1:], return_std=True)
             times.append(1e6 * (time.perf_counter() - begin))
         theirs[samples] = {"scikit-learn": quantiles(times)}
+        if heavy_python:
+            theirs[samples].update(gpytorch_times(heavy_python, samples))
         ours = StiffnessMap().fit(recorded.positions, recorded.forces)
         rows += error_rows(samples, ours, fitted)
         del fitted
@@ -169,6 +174,28 @@ def run(peer_samples=PEER_SAMPLES, our_samples=OURS_SAMPLES) -> list[dict]:
         print(f"model: {samples} samples are {law.grid.places} places", file=sys.stderr)
     rows.append(map_row(hyperparameters))
     return rows
+
+
+def gpytorch_times(python: Path, samples: int) -> dict:
+    """Updates of GPyTorch's exact and variational processes, with their held-out errors."""
+    recorded, _ = palpation(samples + 10)
+    x, y = ScikitLearn.arrays(recorded)
+    points, _, force, _ = held_out()
+    with tempfile.TemporaryDirectory() as folder:
+        given = {"x": x[:samples], "y": y[:samples], "new_x": x[samples:], "new_y": y[samples:], "points": 1e3 * points}
+        np.savez(Path(folder) / "palpation.npz", **given)
+        command = [python, Path(__file__).with_name("gpytorch_peers.py"), folder]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        if done.returncode:
+            print(f"model: without GPyTorch: {done.stderr.strip().splitlines()[-1:]}", file=sys.stderr)
+            return {}
+        with np.load(Path(folder) / "results.npz") as results:
+            times = {}
+            for name in ("exact", "svgp"):
+                rms = 1e3 * float(np.sqrt(np.mean((results[f"{name}_force"] - force) ** 2)))
+                times[f"gpytorch-{name}"] = {**quantiles(results[f"{name}_us"]), "held_out_force_rms_mN": rms}
+                print(f"model: held_out_force, {samples} samples: gpytorch-{name} {rms:.1f} mN", file=sys.stderr)
+    return times
 
 
 def map_row(hyperparameters) -> dict:

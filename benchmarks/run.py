@@ -20,6 +20,7 @@ import capture
 import csa
 import exploration
 import latency
+import live_map
 import model
 import overlay
 import peers
@@ -116,7 +117,7 @@ def run_collision(program):
     return rows
 
 
-def run(groups, program, soak_s=0.0):
+def run(groups, program, soak_s=0.0, heavy=False):
     """Rows of the given groups in the format of the JSON file."""
     python_groups = [group for group in groups if group in PYTHON_PEERS]
     rows = run_python_peers(python_groups, program) if python_groups else []
@@ -130,7 +131,9 @@ def run(groups, program, soak_s=0.0):
     rows += stereo_contact.run() if "stereo_contact" in groups else []
     rows += recording.run() if "recording" in groups else []
     rows += capture.run() if "capture" in groups else []
-    rows += model.run() + registration.run(BENCH_PYTHON) + exploration.run() if "model" in groups else []
+    if "model" in groups:
+        rows += model.run(BENCH_PYTHON if heavy else None) + live_map.run(heavy)
+        rows += registration.run(BENCH_PYTHON) + exploration.run()
     return rows
 
 
@@ -191,13 +194,16 @@ def main():
     parser.add_argument("groups", nargs="*", metavar="GROUP", help=f"of {', '.join(GROUPS)}; default: all")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the rows there too")
     parser.add_argument("--soak", type=float, default=0.0, metavar="S", help="of the group latency: also S seconds")
+    parser.add_argument(
+        "--heavy", action="store_true", help="of the group model: also GPyTorch, and ten minutes of the live map"
+    )
     parser.add_argument("--program", type=Path, required=True, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     unknown = set(arguments.groups) - set(GROUPS)
     if unknown:
         parser.error(f"unknown group {', '.join(sorted(unknown))}; there are {', '.join(GROUPS)}")
     try:
-        rows = run(arguments.groups or list(GROUPS), arguments.program, arguments.soak)
+        rows = run(arguments.groups or list(GROUPS), arguments.program, arguments.soak, arguments.heavy)
     except (
         NotTheSame,
         calibration.NoResult,
