@@ -11,7 +11,7 @@ from saras.csa.setup import UP, Setup, rotation
 from saras.model import Mesh, StiffMesh
 from saras.model.live import refine
 
-COARSE = 13  #: vertices along an edge of a patch
+COARSE = 14  #: vertices along an edge of a patch
 
 
 def prior_mesh(setup: Setup, half_width_m: float, vertices: int) -> Mesh:

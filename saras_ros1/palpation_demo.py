@@ -60,6 +60,8 @@ class Watched:
         self.rows: Any = None
         self.begun_with: Any = None
         self.series: list[Any] = []
+        self.paces_Hz: list[float] = []
+        self.pace: dict[str, str] = {}
         self.silent = False
 
     @property
@@ -79,6 +81,13 @@ class Watched:
             self.begun_with = self.rows
         stiffest = np.array([state.stiffest.x, state.stiffest.y, state.stiffest.z])
         self.series.append(self.truth.errors(t_s, int(state.learned), self.rows, stiffest))
+        self.paces_Hz.append(state.touched_hz)
+        self.pace = {
+            "vertices near the tip asked [1/s], median": f"{np.median(self.paces_Hz):.1f}",
+            "a vertex out of date for [s], at the longest, 99 %": f"{state.oldest_s_p99:.2f}",
+            "a sample learned in [ms], 99 %": f"{1e3 * state.learning_s_p99:.2f}",
+            "samples dropped for want of time": str(state.waiting_dropped),
+        }
 
     def line(self) -> str:
         """In a few words."""
@@ -179,7 +188,7 @@ def conclude(arguments: argparse.Namespace, watched: Watched | None) -> list[str
     out: Path = arguments.out
     if watched is None or not watched.series:
         return ["no map came"]
-    facts = {"seed": arguments.seed, "cost": arguments.cost, "system file": out / "system.json"}
+    facts = {**watched.pace, "seed": arguments.seed, "cost": arguments.cost, "system file": out / "system.json"}
     html = report(watched.truth, watched.rows, watched.begun_with, watched.series, facts)
     (out / "report.html").write_text(html, encoding="utf-8")
     last, problems = watched.series[-1], []

@@ -13,7 +13,7 @@ from saras.csa.system import load
 from saras.sim.palpation import Phantom
 from saras_ros1.modeler_prior import square
 
-COARSE = 13
+COARSE = 14
 HALF_WIDTH_M, LOOKED_AT_M = 0.028, 0.02
 SHIFT_M, BEND_M, TILT = 0.0015, 0.0015, 0.03
 INCLUSION_M = 0.012
