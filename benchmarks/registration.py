@@ -116,6 +116,36 @@ def bent_rows(python: Path, count: int = BENT_DRAWS) -> list[dict]:
     ]
 
 
+def update_row(count: int = 60) -> dict:
+    """A mesh of 10,242 vertices laid and bent anew, from how it lay before, while 5 points come at a time [ms]."""
+    vertices, triangles = draws.organ(1, subdivisions=5)
+    mesh = Mesh(vertices, triangles)
+    grid = DeformationGrid(mesh, 0.03)
+    rng = np.random.default_rng(1)
+    truth = draws.bent(vertices, 1, 0.01)
+    points = draws.on_surface(truth, triangles, rng, 50 + 5 * count) + rng.normal(0, 0.5e-3, (50 + 5 * count, 3))
+    covariances = np.tile(0.25e-6 * np.eye(3), (len(points), 1, 1))
+    pose, start, times = np.eye(4), None, []
+    for i in range(count):
+        some = slice(0, 50 + 5 * i)
+        begin = time.perf_counter()
+        rigid = register_rigid(
+            mesh, points[some], covariances[some], pose, gate=1e3, prior_shift_m=5e-3, prior_turn_rad=0.1
+        )
+        pose = np.asarray(rigid.base_T_mesh)
+        bent = grid.deform(points[some], covariances[some], pose, gate=1e3, start=start)
+        start = bent.displacements
+        times.append(1e3 * (time.perf_counter() - begin))
+    return {
+        "group": "model",
+        "name": "deformable_update_time",
+        "unit": "ms",
+        "ours": quantiles(times),
+        "peers": {},
+        "ratio": {},
+    }
+
+
 def run(python: Path) -> list[dict]:
     """All rows."""
-    return rigid_rows() + bent_rows(python)
+    return [*rigid_rows(), *bent_rows(python), update_row()]

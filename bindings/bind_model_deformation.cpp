@@ -47,7 +47,7 @@ void bind_model_deformation(py::module_& m) {
             options.max_rounds = max_rounds;
             options.tolerance_m = tolerance_m;
             const py::gil_scoped_release release;
-            return deform(self.mesh->mesh, self.grid, given, base_T_mesh, options, from);
+            return deform(self.mesh->mesh, self.mesh->tree, self.grid, given, base_T_mesh, options, from);
           },
           py::arg("points"), py::arg("covariances") = py::none(), py::arg("base_T_mesh") = Pose{}, py::kw_only(),
           py::arg("strain") = defaults.strain, py::arg("travel_m") = defaults.travel_m, py::arg("gate") = defaults.gate,

@@ -29,14 +29,15 @@ Eigen::Matrix3d information_of(const Eigen::Matrix3d& covariance, const Vector3&
 
 class Bending {
  public:
-  Bending(const SurfaceMesh& mesh, const DeformationGrid& grid, const std::vector<SurfacePoint>& points,
-          const Pose& base_T_mesh, const DeformationOptions& options, std::vector<Vector3> start)
+  Bending(const SurfaceMesh& mesh, const MeshTree& tree, const DeformationGrid& grid,
+          const std::vector<SurfacePoint>& points, const Pose& base_T_mesh, const DeformationOptions& options,
+          std::vector<Vector3> start)
       : mesh_(mesh),
         grid_(grid),
         options_(options),
         bent_(mesh),
-        tree_(bent_),
-        equations_(mesh, grid, options.strain * options.spacing_m, options.travel_m),
+        tree_(tree, bent_),
+        equations_(grid, options.strain * options.spacing_m, options.travel_m),
         matches_(points.size()) {
     const Pose mesh_T_base = base_T_mesh.inverse();
     const Eigen::Matrix3d rotation = mesh_T_base.rotation.toRotationMatrix();
@@ -147,15 +148,16 @@ void DeformationOptions::validate() const {
   validate::positive("tolerance_m", tolerance_m);
 }
 
-Deformation deform(const SurfaceMesh& mesh, const DeformationGrid& grid, const std::vector<SurfacePoint>& points,
-                   const Pose& base_T_mesh, const DeformationOptions& options, const std::vector<Vector3>& start) {
+Deformation deform(const SurfaceMesh& mesh, const MeshTree& tree, const DeformationGrid& grid,
+                   const std::vector<SurfacePoint>& points, const Pose& base_T_mesh, const DeformationOptions& options,
+                   const std::vector<Vector3>& start) {
   options.validate();
   check_surface_points(mesh, points, base_T_mesh);
   if (!start.empty() && start.size() != grid.corners()) {
     throw ModelError("start: " + std::to_string(start.size()) + " displacements: must be " +
                      std::to_string(grid.corners()) + ", one a corner");
   }
-  return Bending(mesh, grid, points, base_T_mesh, options, start).settle();
+  return Bending(mesh, tree, grid, points, base_T_mesh, options, start).settle();
 }
 
 }  // namespace saras

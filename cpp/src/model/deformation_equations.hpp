@@ -11,7 +11,7 @@ namespace saras {
 class DeformationEquations {
  public:
   /// strain_m: standard deviation of neighbouring corners' difference; travel_m: of a corner's displacement.
-  DeformationEquations(const SurfaceMesh& mesh, const DeformationGrid& grid, double strain_m, double travel_m);
+  DeformationEquations(const DeformationGrid& grid, double strain_m, double travel_m);
 
   /// Leaves only what is believed without points.
   void restart();
@@ -22,12 +22,11 @@ class DeformationEquations {
   bool solve(std::vector<Vector3>& displacements);
 
  private:
-  void couple(const SurfaceMesh& mesh, const DeformationGrid& grid);
   void allocate();
   /// Adds to the block in the lower triangle (row >= column).
   void add_block(std::int32_t row, std::int32_t column, const Eigen::Matrix3d& block);
 
-  std::vector<std::vector<std::int32_t>> coupled_;  ///< of each corner: those with a number not below its own
+  const std::vector<std::vector<std::int32_t>>& coupled_;  ///< the grid's
   Eigen::SparseMatrix<double> matrix_;
   std::vector<double> believed_;
   Eigen::VectorXd right_;

@@ -1,5 +1,8 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 
 #include "saras/model/deformation.hpp"
@@ -54,6 +57,43 @@ DeformationGrid::DeformationGrid(const SurfaceMesh& mesh, double spacing_m) {
         neighbours_.push_back({number, other->second});
       }
     }
+  }
+  couple(mesh);
+}
+
+void DeformationGrid::couple(const SurfaceMesh& mesh) {
+  coupled_.resize(positions_.size());
+  // A point anywhere on a triangle couples all corners of its vertices' cubes. Most triangles lie in one cube or two.
+  std::set<std::array<std::int32_t, 3>> seen;
+  const auto cube = [&](std::int32_t vertex) { return vertices_[static_cast<std::size_t>(vertex)].corners[0]; };
+  const auto corners_of = [&](std::int32_t vertex) { return vertices_[static_cast<std::size_t>(vertex)].corners; };
+  for (const auto& triangle : mesh.triangles) {
+    std::array<std::int32_t, 3> cubes{cube(triangle[0]), cube(triangle[1]), cube(triangle[2])};
+    std::sort(cubes.begin(), cubes.end());
+    if (!seen.insert(cubes).second) {
+      continue;
+    }
+    std::vector<std::int32_t> all;
+    for (const std::int32_t vertex : triangle) {
+      const auto corners = corners_of(vertex);
+      all.insert(all.end(), corners.begin(), corners.end());
+    }
+    for (const std::int32_t a : all) {
+      for (const std::int32_t b : all) {
+        if (b >= a) {
+          coupled_[static_cast<std::size_t>(a)].push_back(b);
+        }
+      }
+    }
+  }
+  for (const auto& [a, b] : neighbours_) {
+    coupled_[static_cast<std::size_t>(std::min(a, b))].push_back(std::max(a, b));
+  }
+  for (std::size_t corner = 0; corner < coupled_.size(); ++corner) {
+    auto& mine = coupled_[corner];
+    mine.push_back(static_cast<std::int32_t>(corner));
+    std::sort(mine.begin(), mine.end());
+    mine.erase(std::unique(mine.begin(), mine.end()), mine.end());
   }
 }
 

@@ -37,6 +37,8 @@ class DeformationGrid {
   const std::vector<Vector3>& positions() const { return positions_; }
   /// Pairs of corners one spacing apart.
   const std::vector<std::array<std::int32_t, 2>>& neighbours() const { return neighbours_; }
+  /// Of each corner: itself and those with a greater number that a point of the mesh may depend on together with it.
+  const std::vector<std::vector<std::int32_t>>& coupled() const { return coupled_; }
   /// Of the mesh's vertices.
   const std::vector<Place>& vertices() const { return vertices_; }
   /// Of a point of a triangle, by the places of its vertices.
@@ -49,6 +51,9 @@ class DeformationGrid {
   std::vector<Vector3> positions_;
   std::vector<std::array<std::int32_t, 2>> neighbours_;
   std::vector<Place> vertices_;
+  std::vector<std::vector<std::int32_t>> coupled_;
+
+  void couple(const SurfaceMesh& mesh);
 };
 
 struct Deformation {
@@ -62,8 +67,8 @@ struct Deformation {
 
 /// points: base frame. start: displacements to begin with (those of the last call), or empty. Throws ModelError as
 /// register_rigid, and for a start of another size.
-Deformation deform(const SurfaceMesh& mesh, const DeformationGrid& grid, const std::vector<SurfacePoint>& points,
-                   const Pose& base_T_mesh, const DeformationOptions& options = {},
-                   const std::vector<Vector3>& start = {});
+Deformation deform(const SurfaceMesh& mesh, const MeshTree& tree, const DeformationGrid& grid,
+                   const std::vector<SurfacePoint>& points, const Pose& base_T_mesh,
+                   const DeformationOptions& options = {}, const std::vector<Vector3>& start = {});
 
 }  // namespace saras

@@ -38,6 +38,8 @@ class MeshTree {
  public:
   /// The mesh must live as long as the tree, and be valid.
   explicit MeshTree(const SurfaceMesh& mesh);
+  /// The same tree over another mesh with the same triangles; for other vertices refit() it.
+  MeshTree(const MeshTree& tree, const SurfaceMesh& mesh) : mesh_(mesh), nodes_(tree.nodes_), order_(tree.order_) {}
   /// After the mesh's vertices have moved: boxes anew, the tree as it is. O(triangles).
   void refit();
   /// Least (y - x)^T information (y - x) over the surface: for the inverse covariance of a measurement the point that
