@@ -25,7 +25,7 @@ class Run {
  public:
   Run(const MeshTree& tree, const std::vector<SurfacePoint>& points, const Pose& start,
       const RegistrationOptions& options)
-      : tree_(tree), points_(points), options_(options), information_(points.size()) {
+      : tree_(tree), points_(points), options_(options), information_(points.size()), weights_(points.size(), 1.0) {
     result_.base_T_mesh = start;
     result_.matches.resize(points.size());
     result_.used.assign(points.size(), true);
@@ -45,6 +45,7 @@ class Run {
       // The first rounds only find out how far off the pose is.
       result_.converged = result_.iterations > 3 && moved_m < options_.tolerance_m;
     }
+    weigh_all();
     finish();
     return std::move(result_);
   }
@@ -93,6 +94,49 @@ class Run {
     }
   }
 
+  /// Where the gate left points out: each one counts by how probably it is no gross error, instead of all or not at
+  /// all. Expectation and maximisation over noise and gross errors anywhere along the normal.
+  void weigh_all() {
+    const auto left_out = std::count(result_.used.begin(), result_.used.end(), false);
+    if (!options_.most_likely || left_out == 0) {
+      return;
+    }
+    misalignment_ = 0.0;  // it has settled: what is left is noise, or gross
+    double gross_share = static_cast<double>(left_out) / static_cast<double>(points_.size());
+    bool settled = false;
+    for (int round = 0; round < kWeighedRounds && !settled; ++round, ++result_.iterations) {
+      match();
+      gross_share = weigh(gross_share);
+      settled = move() < options_.tolerance_m;
+    }
+    match();
+    weigh(gross_share);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      result_.used[i] = weights_[i] > 0.5;
+    }
+  }
+
+  /// The points' weights from the share of gross errors; returns what that share is by them.
+  double weigh(double gross_share) {
+    constexpr double kRootTwoPi = 2.5066282746310002;
+    double reach_m = 0.0;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      reach_m = std::max(reach_m, std::abs(residual(i).dot(normal_of(i))));
+    }
+    double gross = 0.0;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const Vector3 normal = normal_of(i);
+      const double deviation_m = std::sqrt(normal.dot(information_[i].inverse() * normal));
+      const double noise = std::exp(-0.5 * result_.matches[i].squared) / (kRootTwoPi * deviation_m);
+      const double good = (1.0 - gross_share) * noise;
+      const double bad = gross_share / (2.0 * std::max(reach_m, deviation_m));
+      weights_[i] = good / (good + bad);
+      gross += (1.0 - weights_[i]) / static_cast<double>(points_.size());
+      result_.used[i] = true;
+    }
+    return std::clamp(gross, kLeastGross, 0.5);
+  }
+
   Vector3 normal_of(std::size_t i) const {
     return result_.base_T_mesh.rotation * tree_.normal(result_.matches[i].triangle);
   }
@@ -132,8 +176,8 @@ class Run {
       const double sticking = sticking_share();
       curvature = sticking * information_[i] + (1.0 - sticking) / across * normal * normal.transpose();
     }
-    gradient += jacobian.transpose() * curvature * (points_[i].position - on_mesh);
-    hessian += jacobian.transpose() * curvature * jacobian;
+    gradient += weights_[i] * jacobian.transpose() * curvature * (points_[i].position - on_mesh);
+    hessian += weights_[i] * jacobian.transpose() * curvature * jacobian;
   }
 
   void add_prior(Matrix6& hessian, Vector6& gradient) const {
@@ -175,7 +219,7 @@ class Run {
     Vector6 row;
     row << normal, (on_mesh - middle_).cross(normal);
     const double variance = normal.dot(points_[i].covariance * normal) + options_.mesh_noise_m * options_.mesh_noise_m;
-    hessian += row * row.transpose() / variance;
+    hessian += weights_[i] / variance * row * row.transpose();
   }
 
   /// Where a prior holds what the points leave open, sticking would only make the way to it long.
@@ -185,10 +229,13 @@ class Run {
     return held ? kSticking * std::pow(0.6, result_.iterations) : kSticking;
   }
 
+  static constexpr int kWeighedRounds = 30;
+  static constexpr double kLeastGross = 1e-3;
   const MeshTree& tree_;
   const std::vector<SurfacePoint>& points_;
   const RegistrationOptions& options_;
   std::vector<Eigen::Matrix3d> information_;
+  std::vector<double> weights_;  ///< probability of being no gross error
   Vector3 middle_ = Vector3::Zero();
   double reach_m_ = 0.0;
   double misalignment_ = 0.0;  ///< [m^2] each axis

@@ -43,7 +43,7 @@ struct Registration {
   Eigen::Matrix<double, 6, 6> covariance =
       Eigen::Matrix<double, 6, 6>::Zero();  ///< of displacement(estimate, truth), at the points' middle: [m, rad]
   std::vector<MeshMatch> matches;           ///< of each point, in the mesh's frame
-  std::vector<bool> used;                   ///< false: left out
+  std::vector<bool> used;                   ///< false: more probably a gross error than noise
   double rms_m = 0.0;                       ///< distance of the used points from the mesh
   int iterations = 0;
   bool converged = false;
