@@ -189,6 +189,7 @@ void bind_csa(py::module_& m) {
   bind_compliance(m);
   bind_master(m);
   bind_csa_fixtures(m);
+  bind_csa_teleop_fixtures(m);
   bind_csa_slave(m);
   bind_csa_teleop(m);
 }

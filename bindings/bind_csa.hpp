@@ -40,5 +40,6 @@ void bind_csa(py::module_& m);
 void bind_csa_fixtures(py::module_& m);
 void bind_csa_slave(py::module_& m);
 void bind_csa_teleop(py::module_& m);
+void bind_csa_teleop_fixtures(py::module_& m);
 
 }  // namespace saras::bindings

@@ -1,5 +1,5 @@
 #include "bind_csa.hpp"
-#include "saras/csa/virtual_fixture.hpp"
+#include "saras/csa/teleop_fixture.hpp"
 
 namespace saras::bindings {
 namespace {
@@ -48,9 +48,27 @@ Fixture fixture(const std::string& name, Geometry geometry, bool soft) {
   return made;
 }
 
+/// As records hold it: a kind by its number and all its numbers in a row.
+void bind_plain(py::class_<Fixture>& bound) {
+  bound
+      .def(py::init([](const std::string& name, bool soft, int kind, const std::vector<double>& numbers) {
+             return fixture(name, to_geometry(kind, numbers), soft);
+           }),
+           py::kw_only(), py::arg("name"), py::arg("soft"), py::arg("kind"), py::arg("numbers"),
+           "From a record: kind and numbers of another fixture. Raises ConfigError.")
+      .def_property_readonly(
+          "kind", [](const Fixture& self) { return static_cast<int>(self.geometry.index()); },
+          "0 plane, 1 line, 2 path, 3 remote centre, 4 hull, 5 mesh")
+      .def_property_readonly(
+          "numbers", [](const Fixture& self) { return to_numbers(self.geometry); }, "of its geometry, in a row");
+  bound.attr("_fields") = std::vector<std::string>{"name", "soft", "kind", "numbers"};
+}
+
 void bind_geometries(py::module_& m) {
-  py::class_<Fixture>(m, "Fixture", "One virtual fixture; make it with plane, line, path, remote_centre, hull, mesh.")
-      .def_readonly("name", &Fixture::name)
+  py::class_<Fixture> bound(m, "Fixture",
+                            "One virtual fixture; make it with plane, line, path, remote_centre, hull, mesh.");
+  bind_plain(bound);
+  bound.def_readonly("name", &Fixture::name)
       .def_readonly("soft", &Fixture::soft)
       .def_static(
           "plane",

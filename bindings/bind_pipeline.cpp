@@ -59,6 +59,8 @@ void bind_config(py::module_& m) {
   config.field("proximity_slowdown", &C::proximity_slowdown, "bound the speed near things and while they are unknown");
   side_values(config, &C::unknown_speed_m_s, "_unknown_speed_m_s", "speed limit while the nearness is unknown [m/s]");
   nested(config, "distances", &C::distances, "DistancesConfig");
+  side_values(config, &C::fixtures, "_fixtures", "list of saras.csa.TeleopFixture in the arm's base frame");
+  nested(config, "fixture_force", &C::fixture_force, "saras.csa.FixtureForceConfig");
   config.field("observe", &C::observe, "wrench on the tissue from the observer, else from the arm's input");
   nested(config, "observer", &C::observer, "saras.teleop.DisturbanceObserverConfig");
   config.field("handle_timeout_s", &C::handle_timeout_s, "an older handle is stale [s]")
@@ -107,6 +109,7 @@ void bind_input(py::module_& m) {
   nested(side, "arm", &S::arm, "ArmInput");
   nested(side, "channel", &S::channel, "SupervisorWord");
   nested(side, "nearness", &S::nearness, "NearnessInput; not read when the pipeline takes the distances itself");
+  nested(side, "fixtures", &S::fixtures, "saras.csa.FixtureWord of the configured fixtures");
   using W = SceneInput;
   Struct<W> scene(m, "SceneInput", "Where everything is that the tools could meet, in the world.");
   scene.field("age_s", &W::age_s, "[s]");
@@ -170,13 +173,15 @@ void bind_output(py::module_& m) {
       .field("tissue_wrench", &O::tissue_wrench, "(6,) exerted on the tissue")
       .field("to_guard", &O::to_guard, "saras.net.PortLedger to the port guard")
       .field("nearness", &O::nearness, "NearnessInput as used")
+      .field("fixtures", &O::fixtures, "saras.csa.FixtureForceOutput")
       .field("mapping", &O::mapping, "saras.Status of the frame mapping")
       .field("transparency", &O::transparency, "saras.Status of transparency")
       .field("integrator", &O::integrator, "saras.Status of the integrator")
       .field("speed_limited", &O::speed_limited, "command above the speed limit")
       .field("approach_limited", &O::approach_limited, "command above the approach limit")
       .field("lead_limited", &O::lead_limited, "set-point too far ahead of measured")
-      .field("workspace_limited", &O::workspace_limited, "at the edge of cone or insertion");
+      .field("workspace_limited", &O::workspace_limited, "at the edge of cone or insertion")
+      .field("fixture_limited", &O::fixture_limited, "at a virtual fixture");
   using T = TankOutput;
   Struct<T>(m, "TankOutput", "Of one tank; cumulative joules since the start.")
       .field("energy_J", &T::energy_J, "level [J]")

@@ -194,6 +194,12 @@ void bind_host(py::module_& m) {
           "set_nearness",
           [](TeleopHost& h, const std::string& side, const NearnessInput& n) { h.set_nearness(side_index(side), n); },
           py::arg("side"), py::arg("nearness"), "saras.pipeline.NearnessInput; its age runs from now on.")
+      .def(
+          "set_fixtures",
+          [](TeleopHost& h, const std::string& side, const csa::FixtureWord& word) {
+            h.set_fixtures(side_index(side), word);
+          },
+          py::arg("side"), py::arg("word"), "saras.csa.FixtureWord; holds until the next one.")
       .def("set_scene", &TeleopHost::set_scene, py::arg("scene"),
            "saras.pipeline.SceneInput; its age runs from now on.")
       .def("wait", &TeleopHost::wait, py::arg("timeout_s"), ReleaseGil(),

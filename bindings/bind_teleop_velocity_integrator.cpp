@@ -33,6 +33,7 @@ void bind_output(py::module_& m) {
       .field("lead_limited", &Output::lead_limited, "set-point too far ahead of measured")
       .field("cone_limited", &Output::cone_limited, "at the edge of the cone")
       .field("insertion_limited", &Output::insertion_limited, "at the least or greatest insertion")
+      .field("fixture_limited", &Output::fixture_limited, "at a virtual fixture")
       .field("measured_jumped", &Output::measured_jumped, "measured pose refused")
       .field("status", &Output::status, "saras.Status");
 }

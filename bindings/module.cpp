@@ -22,6 +22,8 @@ PYBIND11_MODULE(_core, m) {
   saras::bindings::bind_safety(safety);
   auto console = m.def_submodule("console", "What the console program steps at device rate");
   saras::bindings::bind_console(console);
+  auto csa = m.def_submodule("csa", "Complementary situational awareness: controllers, fixtures, teleoperation states");
+  saras::bindings::bind_csa(csa);
   auto pipeline = m.def_submodule("pipeline", "Both sides of the teleoperation in one step");
   saras::bindings::bind_pipeline(pipeline);
   auto overlay = m.def_submodule("overlay", "What the surgeons see on the endoscope's images");
@@ -30,8 +32,6 @@ PYBIND11_MODULE(_core, m) {
   saras::bindings::bind_contact(contact);
   auto model = m.def_submodule("model", "What touch tells of stiffness and shape");
   saras::bindings::bind_model(model);
-  auto csa = m.def_submodule("csa", "Complementary situational awareness: controllers, fixtures, teleoperation states");
-  saras::bindings::bind_csa(csa);
 #ifdef SARAS_WITH_RUNTIME
   auto runtime = m.def_submodule("runtime", "The real-time host: loop, mailboxes, flight recorder");
   saras::bindings::bind_runtime(runtime);

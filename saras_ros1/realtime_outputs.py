@@ -12,20 +12,23 @@ from tf2_msgs.msg import TFMessage
 from saras.runtime import HostSnapshot
 from saras_ros1 import convert, tank_messages
 from saras_ros1.channel import SIDES, base_frame
+from saras_ros1.fixtures import PUBLISH_EVERY, Fixtures
 from saras_ros1.handle_outputs import HandleOutputs
-from saras_ros1.msg import TankExchange, TankState
+from saras_ros1.msg import SideFixtures, TankExchange, TankState
 from saras_ros1.node import Node
 from saras_ros1.quiet_faults import TankFaults
 from saras_ros1.realtime_config import Publishing
 
-LIMITS = ("speed", "approach", "lead", "workspace")
+LIMITS = ("speed", "approach", "lead", "workspace", "fixture")
 
 
 class SideTopics:
     """Of one side, from the set-point, which somebody waits for, to what is only looked at."""
 
-    def __init__(self, node: Node, side: str, every: Publishing) -> None:
+    def __init__(self, node: Node, side: str, every: Publishing, fixtures: Fixtures) -> None:
         self.side, self.frame, self._every = side, base_frame(side), every
+        self._fixtures = fixtures
+        self.fixtures = node.output(f"/fixtures/{side}", SideFixtures) if fixtures.lists[side] else None
         self.touch = f"touchball_{side}/touch_base"
         self.console = HandleOutputs(node, side, every.buttons_every, every.state_every)
         self.set_point = node.output(f"/mesa_{side}/set_point", PoseStamped)
@@ -63,6 +66,8 @@ class SideTopics:
             ledger = out.to_guard
             sums = (ledger.session, ledger.seq, ledger.sent_J)
             self.ledger.publish(tank_messages.exchange(*sums, wishes=ledger, stamp_ns=stamp_ns))
+        if self.fixtures is not None and count % PUBLISH_EVERY == 0:
+            self.fixtures.publish(self._fixtures.message(self.side, out.fixtures, stamp_ns))
         if out.has_set_point and count % self._every.tf_every == 0:
             child = f"mesa_{self.side}/set_point"
             transform = convert.transform_msg(out.set_point, self.frame, child, rospy.Time.now())
@@ -105,8 +110,8 @@ class TankTopics:
 class Topics:
     """All of them."""
 
-    def __init__(self, node: Node, pipeline: Any, every: Publishing) -> None:
-        self._sides = {side: SideTopics(node, side, every) for side in SIDES}
+    def __init__(self, node: Node, pipeline: Any, every: Publishing, fixtures: Fixtures) -> None:
+        self._sides = {side: SideTopics(node, side, every, fixtures) for side in SIDES}
         tanks = {"tank_master": pipeline.tank_master, "tank_slave": pipeline.tank_slave}
         self._tanks = {name: TankTopics(node, name, tanks[name], every, pipeline.session) for name in tanks}
         self._count = 0

@@ -23,6 +23,7 @@ from saras import Error
 from saras.runtime import TeleopHost
 from saras_ros1 import convert, realtime_config
 from saras_ros1.channel import SIDES, Channel, base_frame
+from saras_ros1.fixtures import CHECK_S, Fixtures
 from saras_ros1.inputs import HEARTBEAT_S, Input
 from saras_ros1.msg import ChannelState, SideFault
 from saras_ros1.node import Node, run
@@ -55,10 +56,11 @@ class RealtimeHost(Node):
         self.record_directory = Path(directory).expanduser() if directory else home / "flight"
         self.scene = self._read_scene(settings)
         self._wait_for_frames(settings.host.pipeline)
+        self.fixtures = self._read_fixtures(settings.host.pipeline)
 
         self.host = TeleopHost(settings.host)
         self.handshakes = Handshakes(self.host, settings.keys) if settings.keys is not None else None
-        self.topics = Topics(self, settings.host.pipeline, settings.publishing)
+        self.topics = Topics(self, settings.host.pipeline, settings.publishing, self.fixtures)
         self._events = self.output("/system/events", String)
         self._faults = self.output("/system/faults", SideFault)
         self.operator = settings.operator
@@ -78,6 +80,8 @@ class RealtimeHost(Node):
         self.every(HEARTBEAT_S, self._beat_all)
         self._link_faults = LinkFaults(settings.operator)
         self.every(1.0, self._tell_link_faults)
+        if self.fixtures.file is not None:
+            self.every(CHECK_S, self._tell_fixtures)
         if self.scene is not None:
             self.every(self.scene.period_s, partial(self.scene.update, self.host))
 
@@ -88,6 +92,18 @@ class RealtimeHost(Node):
         scene = RealtimeScene(self, Params(rospy.get_param(SECTION, {}), SECTION))
         settings.host.pipeline.distances = scene.config()
         return scene
+
+    def _read_fixtures(self, pipeline) -> Fixtures:
+        """The same file as the separate nodes read, into the pipeline."""
+        fixtures = Fixtures(self, SIDES)
+        pipeline.fixture_force = fixtures.force
+        for side in SIDES:
+            setattr(pipeline, f"{side}_fixtures", fixtures.lists[side])
+        return fixtures
+
+    def _tell_fixtures(self) -> None:
+        for side in SIDES:
+            self.host.set_fixtures(side, self.fixtures.word(side))
 
     def _wait_for_frames(self, pipeline) -> None:
         """Static frames of both consoles; nothing is late before there is a loop."""

@@ -10,6 +10,7 @@ from saras.teleop import Transparency, TransparencyConfig, TransparencyMode, Twi
 from saras_ros1 import convert
 from saras_ros1.arm_inputs import ArmInputs
 from saras_ros1.channel import SIDES, Channel, base_frame
+from saras_ros1.fixtures import Fixtures, HandFixtures
 from saras_ros1.node import Node, Tick, run
 from saras_ros1.proximity import Proximity
 
@@ -40,6 +41,7 @@ class Side:
         self.law = node.law(f"transparency_{side}", Transparency, node.config)
         self.side, self.proximity = side, node.proximity
         self.repulsion = RepulsiveForce(node.repulsion_config)
+        self.fixtures = HandFixtures(node, node.fixtures, side)
         self.wrench_out = node.output(f"/transparency/{side}/desired_wrench", WrenchStamped)
         self.twist_out = node.output(f"/transparency/{side}/desired_twist", TwistStamped)
         self.status = "WAITING"
@@ -48,8 +50,11 @@ class Side:
 
     def step(self, tick: Tick) -> None:
         """Engaged and all fresh: the law. Else its stale branch: the slave stands, the force fades out in 100 ms."""
+        tip = self.arm.pose.value if self.arm.fresh else None
+        felt = self.fixtures.step(tip, -self.error[:3], tick.dt, tick.stamp_ns)
         master = (self.pose.value, self.twist.value, self.filtered.value)
         if any(value is None for value in master) or self.arm.pose.value is None or self.arm.rcm.value is None:
+            self.error = ZERO
             return self._publish(ZERO, ZERO, tick)
         if self.channel.newly_engaged():
             self.law.reset()
@@ -63,7 +68,7 @@ class Side:
             tissue_wrench=self._tissue_wrench(),
             rcm=self.arm.rcm.value,
             clutch=self.channel.clutch,
-            guidance_wrench=self._repulsion(tick.dt),
+            guidance_wrench=self._repulsion(tick.dt) + felt,
             stale=not (live and self.channel.engaged),
             dt=tick.dt,
         )
@@ -107,6 +112,7 @@ class TransparencyNode(Node):
         self.params.finish()
         # No force comes from what is unknown: the speed scale does not matter here.
         self.proximity = Proximity(self, SIDES, collision_timeout_s, 0.0) if wanted else None
+        self.fixtures = Fixtures(self, SIDES)
         self.sides = {side: Side(self, side) for side in SIDES}
 
     def report(self) -> dict:

@@ -8,10 +8,12 @@ import rospy
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from tf2_msgs.msg import TFMessage
 
+from saras.csa import FixtureIntegrator
 from saras.teleop import VelocityIntegrator, VelocityIntegratorConfig
 from saras_ros1 import convert
 from saras_ros1.arm_inputs import ArmInputs
 from saras_ros1.channel import SIDES, Channel, base_frame
+from saras_ros1.fixtures import Fixtures
 from saras_ros1.node import Node, Tick, run
 from saras_ros1.proximity import Proximity
 
@@ -43,7 +45,10 @@ class VelocityIntegratorNode(Node):
         self.proximity = Proximity(self, (side,), collision_timeout_s, unknown_scale) if wanted else None
         self.set_point = self.output(f"/mesa_{side}/set_point", PoseStamped)
         self.tf = self.output("/tf", TFMessage)
-        self.integrator = self.law(f"velocity_integrator_{side}", VelocityIntegrator, config)
+        self.fixtures = Fixtures(self, (side,))
+        self.walls = self.fixtures.lists[side]
+        law = (FixtureIntegrator, config, self.walls) if self.walls else (VelocityIntegrator, config)
+        self.integrator = self.law(f"velocity_integrator_{side}", *law)
         self.last = None
         self.ticks = 0
         self.wait_for(lambda: not self._missing(), start_pose_wait_s, self._missing)
@@ -80,11 +85,16 @@ class VelocityIntegratorNode(Node):
             self.tf.publish(TFMessage([transform]))
 
     def _bounds(self) -> dict[str, Any]:
-        """How fast the tool may go where it is."""
+        """How fast the tool may go where it is, and whether its fixtures hold."""
+        bounds: dict[str, Any] = {}
+        if self.walls:
+            word = self.fixtures.word(self.side)
+            bounds = {"fixtures_on": word.on, "fixtures_known": word.known}
         if self.proximity is None:
-            return {}
+            return bounds
         near = self.proximity.of(self.side)
         return {
+            **bounds,
             "max_speed_scale": near.max_speed_scale,
             "approach_direction": near.approach_direction,
             "approach_speed_limit_m_s": near.approach_speed_limit_m_s,

@@ -12,10 +12,11 @@ from sensor_msgs.msg import JointState
 from visualization_msgs.msg import MarkerArray
 
 from saras.kinematics import mesa, simball
-from saras_ros1 import convert, markers
+from saras_ros1 import convert, fixture_markers, markers
 from saras_ros1.channel import SIDES, base_frame
+from saras_ros1.fixtures import read_file
 from saras_ros1.latest import Latest
-from saras_ros1.msg import ChannelState, RecorderState, TankState
+from saras_ros1.msg import ChannelState, RecorderState, SideFixtures, TankState
 from saras_ros1.node import Node, run
 
 LABEL_HEIGHT_M = 0.33
@@ -37,6 +38,9 @@ class Side:
         self.hand = Latest(f"/touchball_{side}/wrench", WrenchStamped)
         self.state = Latest(f"/system/{side}/state", ChannelState)
         self.guard = Latest(f"/port_guard_{side}/state", TankState)
+        entries = node.fixtures.of(side) if node.fixtures is not None else ()
+        self.fixtures = Latest(f"/fixtures/{side}", SideFixtures) if entries else None
+        self.borders = {known: [fixture_markers.shape(e, side, not known) for e in entries] for known in (False, True)}
         self.trail: deque = deque(maxlen=markers.TRAIL_POINTS)
         self.arm_out = node.output(f"/visualization/mesa_{side}/joint_states", JointState)
         self.passive_out = node.output(f"/visualization/mesa_{side}/passive/joint_states", JointState)
@@ -81,7 +85,16 @@ class Side:
             markers.ball(f"{s} trocar", frame, rcm and rcm.point, markers.WHITE, 0.006),
             markers.force(f"{s} force on hand", f"{self.console}/touch_base", self._hand_in_touch(), self.hand.value()),
             markers.label(f"{s} state", frame, LABEL_HEIGHT_M, self.state.value(), energies),
+            *self._fixture_markers(),
         ]
+
+    def _fixture_markers(self) -> list:
+        """Borders and the nearest point; grey while nobody says where they are."""
+        if self.fixtures is None:
+            return []
+        message = self.fixtures.value()
+        known = message is not None and message.nearest >= 0
+        return [*self.borders[known], *fixture_markers.state(self.side, message)]
 
     def _tip(self) -> Point | None:
         """The tool tip in the arm's base, from the joints."""
@@ -110,6 +123,7 @@ class Visualization(Node):
         markers_hz = self.params.number("markers_hz", 1.0, 60.0)
         self.params.finish()
         self.tanks = {name: Latest(f"/tank_{name}/state", TankState) for name in ("master", "slave")}
+        self.fixtures = read_file()
         self.recorder = Latest("/recorder/state", RecorderState)
         self.sides = [Side(self, side) for side in SIDES]
         self.markers = self.output("/saras/markers", MarkerArray)

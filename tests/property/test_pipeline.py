@@ -7,6 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from saras import displacement
 from saras.collision import ProximityMonitor, RepulsiveForce
+from saras.csa import Fixture, FixtureForce, FixtureIntegrator, TeleopFixture
 from saras.net import ChannelState
 from saras.pipeline import DistancesConfig, NearnessInput, Pipeline, PipelineConfig, PipelineInput
 from saras.sim.exchange import TankNode
@@ -17,7 +18,6 @@ from saras.teleop import (
     Transparency,
     TransparencyMode,
     TwistEstimator,
-    VelocityIntegrator,
     VelocityIntegratorConfig,
 )
 
@@ -25,7 +25,7 @@ SIDES = ("left", "right")
 ROUNDING = 1e-9
 TOLD = (
     "tracked_pose", "tracked_twist", "tracked_twist_filtered", "handle_twist", "desired_wrench", "desired_twist",
-    "base_wrench", "touch_wrench", "twist", "set_point",
+    "base_wrench", "touch_wrench", "twist", "set_point", "fixture_wrench", "fixture_distance_m",
 )  # fmt: skip
 
 
@@ -36,7 +36,16 @@ def pose(random, size):
     return matrix
 
 
-def configuration(random, distances):
+def walls(random):
+    """Around the tips' paths, so that each is met by some."""
+    tip, out = np.array([0.18, 0.0, -0.18]), random.normal(size=(3, 3))
+    out /= np.linalg.norm(out, axis=1, keepdims=True)
+    made = [Fixture.plane(f"wall {i}", tip - random.uniform(0.0, 0.006) * n, n) for i, n in enumerate(out)]
+    made.append(Fixture.path("guide", [tip - 0.02 * out[0], tip, tip + 0.02 * out[1]], 0.001, soft=True))
+    return [TeleopFixture(fixture=fixture, start_m=random.uniform(0.0, 0.01)) for fixture in made]
+
+
+def configuration(random, distances, fixtures):
     config = PipelineConfig(
         left_mapping=FrameMappingConfig(base_T_console=pose(random, 0.5), touch_T_console=pose(random, 0.1)),
         right_mapping=FrameMappingConfig(base_T_console=pose(random, 0.5), touch_T_console=pose(random, 0.1)),
@@ -58,6 +67,9 @@ def configuration(random, distances):
     config.tank_slave.applied_limit = np.array([0.1, 0.1, 0.1, 1.0, 1.0, 1.0])
     config.tank_master.hold_s = config.tank_slave.hold_s = 0.012
     config.tank_master.dt_max_s = config.tank_slave.dt_max_s = 0.1
+    if fixtures:
+        config.left_fixtures, config.right_fixtures = walls(random), walls(random)
+        config.fixture_force.ramp_s = random.uniform(0.01, 0.2)
     if distances:
         box = np.array([[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1], [0, 1, 0], [1, 1, 0], [1, 1, 1], [0, 1, 1.0]])
         config.distances = DistancesConfig(enabled=True, other_tools=1, regions=[0.1 * box - [0.0, 0.0, 0.3]])
@@ -71,9 +83,11 @@ class ReferenceSide:
         self.transparency, self.estimator = Transparency(config.transparency), TwistEstimator(config.slave_twist)
         self.observer, self.integrator = (
             DisturbanceObserver(config.observer),
-            VelocityIntegrator(getattr(config, f"{side}_integrator")),
+            FixtureIntegrator(getattr(config, f"{side}_integrator"), getattr(config, f"{side}_fixtures")),
         )
         self.repulsion = RepulsiveForce(config.repulsion)
+        self.fixtures = FixtureForce(config.fixture_force, getattr(config, f"{side}_fixtures"))
+        self.hand_ahead = np.zeros(3)
         law = self.mapping.config
         self.touch_R_base = law.touch_T_console[:3, :3] @ law.base_T_console[:3, :3].T
         self.tracked = None
@@ -117,8 +131,16 @@ class ReferenceSide:
         self.port = (arm.base_T_tip, self.wrench)
         return float(self.mean_wrench @ moved)
 
-    def command(self, handle, arm, clutch, near, dt):
+    def command(self, handle, arm, clutch, near, word, dt):
         self.since_command += dt
+        fresh = arm.age_s <= self.config.arm_timeout_s
+        self.felt = self.fixtures.step(
+            base_T_tip=arm.base_T_tip,
+            dt=dt,
+            hand_ahead=self.hand_ahead,
+            fixtures_on=word.on,
+            fixtures_known=word.known and fresh,
+        )
         out = self.mapping.step(console_T_handle=handle.simball_T_handle, dt=dt, clutch=handle.clutch)
         if out.has_pose:
             self.tracked = out.tracked_pose
@@ -136,13 +158,14 @@ class ReferenceSide:
             tissue_wrench=np.full(6, np.nan) if self.port is None else self.wrench,
             rcm=arm.rcm,
             clutch=clutch or handle.clutch,
-            guidance_wrench=push,
+            guidance_wrench=push + self.felt.wrench,
             stale=not self.engaged or arm.age_s > self.config.arm_timeout_s,
             dt=interval,
         )
         self.desired_wrench, self.desired_twist = asked.desired_wrench, asked.desired_twist
+        self.hand_ahead = -asked.error[:3]
 
-    def move(self, twist, arm, near, dt):
+    def move(self, twist, arm, near, word, dt):
         if self.engaged and arm.age_s <= self.config.arm_timeout_s:
             out = self.integrator.step(
                 twist=twist,
@@ -152,6 +175,8 @@ class ReferenceSide:
                 max_speed_scale=near.max_speed_scale,
                 approach_direction=near.approach_direction,
                 approach_speed_limit_m_s=near.approach_speed_limit_m_s,
+                fixtures_on=word.on,
+                fixtures_known=word.known,
             )
             self.set_point = out.set_point if out.has_set_point else None
 
@@ -200,7 +225,7 @@ class Reference:
         work = []
         for k, (side, i) in enumerate(zip(self.sides, inputs)):
             work.append(side.observe(i.arm))
-            side.command(i.handle, i.arm, i.channel.clutch, nearness[k], dt)
+            side.command(i.handle, i.arm, i.channel.clutch, nearness[k], i.fixtures, dt)
             peer = self.master.peers[k]
             ledger = i.handle.ledger
             peer._credit_J += peer._receiver.credit(ledger.session, ledger.seq, ledger.sent_J)
@@ -230,7 +255,7 @@ class Reference:
         told = []
         for k, (side, i) in enumerate(zip(self.sides, inputs)):
             twist = passed.applied[k] if live[k] else zero
-            side.move(twist, i.arm, nearness[k], dt)
+            side.move(twist, i.arm, nearness[k], i.fixtures, dt)
             wrench = out.applied[k]
             told.append(
                 {
@@ -244,9 +269,16 @@ class Reference:
                     "touch_wrench": np.concatenate((side.touch_R_base @ wrench[:3], side.touch_R_base @ wrench[3:])),
                     "twist": twist,
                     "set_point": side.set_point,
+                    "fixture_wrench": side.felt.wrench,
+                    "fixture_distance_m": side.felt.distance_m,
                 }
             )
         return told
+
+
+def told_by(side, field):
+    """A field of the pipeline's output."""
+    return getattr(side.fixtures, field[8:]) if field.startswith("fixture_") else getattr(side, field)
 
 
 def drive(values, random, k, rates):
@@ -284,13 +316,14 @@ def drive(values, random, k, rates):
             approach_speed_limit_m_s=random.uniform(0.0, 0.1),
             distance_m=random.uniform(0.0, 0.02),
         )
+        side.fixtures.on, side.fixtures.known = k % 30 < 25, k % 70 < 65
     values.scene.age_s = 0.0
 
 
-@given(st.integers(0, 2**32 - 1), st.booleans())
-def test_pipeline_equals_its_laws(seed, distances):
+@given(st.integers(0, 2**32 - 1), st.booleans(), st.booleans())
+def test_pipeline_equals_its_laws(seed, distances, fixtures):
     random = np.random.default_rng(seed)
-    config = configuration(random, distances)
+    config = configuration(random, distances, fixtures)
     values = PipelineInput()
     scene = values.scene
     scene.left_base_known = scene.right_base_known = scene.regions_known = True
@@ -311,7 +344,7 @@ def test_pipeline_equals_its_laws(seed, distances):
                 if wanted[field] is None:
                     continue
                 np.testing.assert_allclose(
-                    getattr(got, field), wanted[field], atol=ROUNDING, rtol=ROUNDING, err_msg=f"{name}.{field} at {k}"
+                    told_by(got, field), wanted[field], atol=ROUNDING, rtol=ROUNDING, err_msg=f"{name}.{field} at {k}"
                 )
         for tank, node in ((out.tank_master, reference.master), (out.tank_slave, reference.slave)):
             np.testing.assert_allclose(tank.energy_J, node.tank.state.energy_J, atol=ROUNDING)

@@ -15,11 +15,11 @@ from . import sim
 from . import net
 from . import safety
 from . import console
+from . import csa
 from . import pipeline
 from . import overlay
 from . import contact
 from . import model
-from . import csa
 from . import runtime
 
 __all__: list[str] = [

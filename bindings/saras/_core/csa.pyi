@@ -8,6 +8,7 @@ import numpy
 import numpy.typing
 import saras._core
 import saras._core.kinematics
+import saras._core.teleop
 import typing
 
 __all__: list[str] = [
@@ -28,9 +29,16 @@ __all__: list[str] = [
     "CsaTeleopOutput",
     "CsaTeleopState",
     "Fixture",
+    "FixtureForce",
+    "FixtureForceConfig",
+    "FixtureForceOutput",
+    "FixtureForceState",
+    "FixtureIntegrator",
+    "FixtureIntegratorState",
     "FixtureOutput",
     "FixtureSet",
     "FixtureState",
+    "FixtureWord",
     "GravityModel",
     "MAX_JOINTS",
     "MasterMlc",
@@ -51,6 +59,7 @@ __all__: list[str] = [
     "SlaveMlcState",
     "SlaveMode",
     "Synchronisation",
+    "TeleopFixture",
     "TriangleMesh",
     "contact_transition",
     "is_hold",
@@ -659,6 +668,8 @@ class Fixture:
     """
     One virtual fixture; make it with plane, line, path, remote_centre, hull, mesh.
     """
+
+    _fields: typing.ClassVar[list] = ["name", "soft", "kind", "numbers"]
     @staticmethod
     def hull(
         name: str,
@@ -724,8 +735,29 @@ class Fixture:
         """
         The shaft passes the point (3,) within tolerance_m.
         """
+    def __init__(
+        self,
+        *,
+        name: str,
+        soft: bool,
+        kind: typing.SupportsInt | typing.SupportsIndex,
+        numbers: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex],
+    ) -> None:
+        """
+        From a record: kind and numbers of another fixture. Raises ConfigError.
+        """
+    @property
+    def kind(self) -> int:
+        """
+        0 plane, 1 line, 2 path, 3 remote centre, 4 hull, 5 mesh
+        """
     @property
     def name(self) -> str: ...
+    @property
+    def numbers(self) -> list[float]:
+        """
+        of its geometry, in a row
+        """
     @property
     def soft(self) -> bool: ...
 
@@ -817,6 +849,316 @@ class FixtureSet:
     def names(self) -> list[str]: ...
     @property
     def state(self) -> FixtureState: ...
+
+class TeleopFixture:
+    """
+    A fixture of ordinary teleoperation, in the arm's base frame.
+
+    A hard one is a wall for the set-point and the hand; a soft one only tells the hand.
+    """
+
+    _fields: typing.ClassVar[list] = ["fixture", "stiffness_N_m", "start_m"]
+    def __copy__(self) -> TeleopFixture: ...
+    def __deepcopy__(self, arg0: dict) -> TeleopFixture: ...
+    def __init__(self, **kwargs) -> None:
+        """
+        A fixture of ordinary teleoperation, in the arm's base frame.
+
+        A hard one is a wall for the set-point and the hand; a soft one only tells the hand.
+        """
+    def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
+    @property
+    def fixture(self) -> Fixture:
+        """
+        saras.csa.Fixture, any but a remote centre
+        """
+    @fixture.setter
+    def fixture(self, arg1: Fixture) -> None: ...
+    @property
+    def start_m(self) -> float:
+        """
+        the force begins this far on the allowed side [m]
+        """
+    @start_m.setter
+    def start_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def stiffness_N_m(self) -> float:
+        """
+        force on the hand per metre nearer than start_m [N/m]
+        """
+    @stiffness_N_m.setter
+    def stiffness_N_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class FixtureWord:
+    """
+    What holds at the moment of all fixtures of a side.
+    """
+
+    _fields: typing.ClassVar[list] = ["on", "known"]
+    def __copy__(self) -> FixtureWord: ...
+    def __deepcopy__(self, arg0: dict) -> FixtureWord: ...
+    def __init__(self, **kwargs) -> None:
+        """
+        What holds at the moment of all fixtures of a side.
+        """
+    def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
+    @property
+    def known(self) -> bool:
+        """
+        whether it is known where they are; if not, the set-point stands
+        """
+    @known.setter
+    def known(self, arg1: bool) -> None: ...
+    @property
+    def on(self) -> bool:
+        """
+        switched off: neither wall nor force
+        """
+    @on.setter
+    def on(self, arg1: bool) -> None: ...
+
+class FixtureForceConfig:
+    """
+    Limits of a FixtureForce.
+    """
+
+    _fields: typing.ClassVar[list] = ["force_limit_N", "ramp_s", "dt_max_s"]
+    def __copy__(self) -> FixtureForceConfig: ...
+    def __deepcopy__(self, arg0: dict) -> FixtureForceConfig: ...
+    def __init__(self, **kwargs) -> None:
+        """
+        Limits of a FixtureForce.
+        """
+    def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
+    @property
+    def dt_max_s(self) -> float:
+        """
+        longest time step [s]
+        """
+    @dt_max_s.setter
+    def dt_max_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def force_limit_N(self) -> float:
+        """
+        of one fixture, and of all together [N]
+        """
+    @force_limit_N.setter
+    def force_limit_N(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def ramp_s(self) -> float:
+        """
+        the force moves by at most its limit in this time [s]
+        """
+    @ramp_s.setter
+    def ramp_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class FixtureForceOutput:
+    """
+    Result of FixtureForce.step.
+    """
+
+    _fields: typing.ClassVar[list] = ["wrench", "distance_m", "nearest", "closest", "normal", "violation_m", "status"]
+    def __copy__(self) -> FixtureForceOutput: ...
+    def __deepcopy__(self, arg0: dict) -> FixtureForceOutput: ...
+    def __init__(self, **kwargs) -> None:
+        """
+        Result of FixtureForce.step.
+        """
+    def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
+    @property
+    def closest(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) its closest point, base frame [m]
+        """
+    @closest.setter
+    def closest(self, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+    @property
+    def distance_m(self) -> typing.Annotated[list[float], "FixedSize(16)"]:
+        """
+        of the tip to each border, 16 numbers; negative: passed; NaN: unknown, none
+        """
+    @distance_m.setter
+    def distance_m(
+        self,
+        arg1: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(16)"],
+    ) -> None: ...
+    @property
+    def nearest(self) -> int:
+        """
+        fixture with the least distance; -1: none
+        """
+    @nearest.setter
+    def nearest(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def normal(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) its direction towards what is allowed
+        """
+    @normal.setter
+    def normal(self, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+    @property
+    def status(self) -> saras._core.Status:
+        """
+        saras.Status; LIMITED: a force is due; WAITING: none is there, or they are off
+        """
+    @status.setter
+    def status(self, arg1: saras._core.Status) -> None: ...
+    @property
+    def violation_m(self) -> float:
+        """
+        how far the tip is beyond the nearest border [m]
+        """
+    @violation_m.setter
+    def violation_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def wrench(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (6,) on the operator's hand, base axes
+        """
+    @wrench.setter
+    def wrench(self, arg1: numpy.typing.ArrayLike) -> None: ...
+
+class FixtureForceState:
+    """
+    All that a FixtureForce remembers.
+    """
+
+    _fields: typing.ClassVar[list] = ["force", "fixtures"]
+    def __copy__(self) -> FixtureForceState: ...
+    def __deepcopy__(self, arg0: dict) -> FixtureForceState: ...
+    def __init__(self, **kwargs) -> None:
+        """
+        All that a FixtureForce remembers.
+        """
+    def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
+    @property
+    def fixtures(self) -> FixtureState:
+        """
+        FixtureState
+        """
+    @fixtures.setter
+    def fixtures(self, arg1: FixtureState) -> None: ...
+    @property
+    def force(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) [N]
+        """
+    @force.setter
+    def force(self, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+
+class FixtureForce:
+    """
+    What the hand feels of virtual fixtures.
+    """
+    def __init__(self, config: FixtureForceConfig, fixtures: collections.abc.Sequence[TeleopFixture]) -> None:
+        """
+        At most 16 TeleopFixture. Raises ConfigError.
+        """
+    def reset(self, state: FixtureForceState = ...) -> None: ...
+    def step(
+        self,
+        base_T_tip: numpy.typing.ArrayLike,
+        dt: typing.SupportsFloat | typing.SupportsIndex,
+        hand_ahead: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"] | None = None,
+        fixtures_on: bool = True,
+        fixtures_known: bool = True,
+    ) -> FixtureForceOutput:
+        """
+        base_T_tip: (4, 4) measured; dt: since the last step [s]; hand_ahead: (3,) from the tip to where the hand
+        wants it [m]; fixtures_on, fixtures_known: as FixtureWord.
+        """
+    @property
+    def config(self) -> FixtureForceConfig: ...
+    @property
+    def state(self) -> FixtureForceState: ...
+
+class FixtureIntegratorState:
+    """
+    All that a FixtureIntegrator remembers.
+    """
+
+    _fields: typing.ClassVar[list] = ["integrator", "fixtures"]
+    def __copy__(self) -> FixtureIntegratorState: ...
+    def __deepcopy__(self, arg0: dict) -> FixtureIntegratorState: ...
+    def __init__(self, **kwargs) -> None:
+        """
+        All that a FixtureIntegrator remembers.
+        """
+    def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
+    @property
+    def fixtures(self) -> FixtureState:
+        """
+        FixtureState
+        """
+    @fixtures.setter
+    def fixtures(self, arg1: FixtureState) -> None: ...
+    @property
+    def integrator(self) -> saras._core.teleop.VelocityIntegratorState:
+        """
+        saras.teleop.VelocityIntegratorState
+        """
+    @integrator.setter
+    def integrator(self, arg1: saras._core.teleop.VelocityIntegratorState) -> None: ...
+
+class FixtureIntegrator:
+    """
+    saras.teleop.VelocityIntegrator whose set-point does not pass hard fixtures; without one it is that law.
+    """
+    def __init__(
+        self, config: saras._core.teleop.VelocityIntegratorConfig, fixtures: collections.abc.Sequence[TeleopFixture]
+    ) -> None:
+        """
+        config: saras.teleop.VelocityIntegratorConfig. Raises ConfigError.
+        """
+    def reset(self, state: FixtureIntegratorState = ...) -> None:
+        """
+        Without argument: starts from measured again.
+        """
+    def step(
+        self,
+        twist: numpy.typing.ArrayLike,
+        measured_pose: numpy.typing.ArrayLike,
+        rcm: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+        dt: typing.SupportsFloat | typing.SupportsIndex,
+        stale: bool = False,
+        max_speed_scale: typing.SupportsFloat | typing.SupportsIndex = 1.0,
+        approach_direction: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"] | None = None,
+        approach_speed_limit_m_s: typing.SupportsFloat | typing.SupportsIndex = ...,
+        fixtures_on: bool = True,
+        fixtures_known: bool = True,
+    ) -> saras._core.teleop.VelocityIntegratorOutput:
+        """
+        As VelocityIntegrator.step; fixtures_on, fixtures_known: as FixtureWord. Gives a
+        saras.teleop.VelocityIntegratorOutput, fixture_limited where a fixture held it back.
+        """
+    @property
+    def config(self) -> saras._core.teleop.VelocityIntegratorConfig: ...
+    @property
+    def state(self) -> FixtureIntegratorState: ...
 
 class MotionReason:
     """

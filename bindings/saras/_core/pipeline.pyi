@@ -8,6 +8,7 @@ import numpy
 import numpy.typing
 import saras._core
 import saras._core.collision
+import saras._core.csa
 import saras._core.net
 import saras._core.teleop
 import typing
@@ -109,6 +110,9 @@ class PipelineConfig:
         "left_unknown_speed_m_s",
         "right_unknown_speed_m_s",
         "distances",
+        "left_fixtures",
+        "right_fixtures",
+        "fixture_force",
         "observe",
         "observer",
         "handle_timeout_s",
@@ -151,12 +155,26 @@ class PipelineConfig:
     @distances.setter
     def distances(self, arg1: DistancesConfig) -> None: ...
     @property
+    def fixture_force(self) -> saras._core.csa.FixtureForceConfig:
+        """
+        saras.csa.FixtureForceConfig
+        """
+    @fixture_force.setter
+    def fixture_force(self, arg1: saras._core.csa.FixtureForceConfig) -> None: ...
+    @property
     def handle_timeout_s(self) -> float:
         """
         an older handle is stale [s]
         """
     @handle_timeout_s.setter
     def handle_timeout_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def left_fixtures(self) -> list[saras._core.csa.TeleopFixture]:
+        """
+        list of saras.csa.TeleopFixture in the arm's base frame
+        """
+    @left_fixtures.setter
+    def left_fixtures(self, arg1: collections.abc.Sequence[saras._core.csa.TeleopFixture]) -> None: ...
     @property
     def left_integrator(self) -> saras._core.teleop.VelocityIntegratorConfig:
         """
@@ -227,6 +245,13 @@ class PipelineConfig:
         """
     @repulsion.setter
     def repulsion(self, arg1: saras._core.collision.RepulsiveForceConfig) -> None: ...
+    @property
+    def right_fixtures(self) -> list[saras._core.csa.TeleopFixture]:
+        """
+        list of saras.csa.TeleopFixture in the arm's base frame
+        """
+    @right_fixtures.setter
+    def right_fixtures(self, arg1: collections.abc.Sequence[saras._core.csa.TeleopFixture]) -> None: ...
     @property
     def right_integrator(self) -> saras._core.teleop.VelocityIntegratorConfig:
         """
@@ -538,7 +563,7 @@ class SideInput:
     Inputs of one side.
     """
 
-    _fields: typing.ClassVar[list] = ["handle", "arm", "channel", "nearness"]
+    _fields: typing.ClassVar[list] = ["handle", "arm", "channel", "nearness", "fixtures"]
     def __copy__(self) -> SideInput: ...
     def __deepcopy__(self, arg0: dict) -> SideInput: ...
     def __init__(self, **kwargs) -> None:
@@ -564,6 +589,13 @@ class SideInput:
         """
     @channel.setter
     def channel(self, arg1: SupervisorWord) -> None: ...
+    @property
+    def fixtures(self) -> saras._core.csa.FixtureWord:
+        """
+        saras.csa.FixtureWord of the configured fixtures
+        """
+    @fixtures.setter
+    def fixtures(self, arg1: saras._core.csa.FixtureWord) -> None: ...
     @property
     def handle(self) -> HandleInput:
         """
@@ -742,6 +774,7 @@ class PipelineSideOutput:
         "tissue_wrench",
         "to_guard",
         "nearness",
+        "fixtures",
         "mapping",
         "transparency",
         "integrator",
@@ -749,6 +782,7 @@ class PipelineSideOutput:
         "approach_limited",
         "lead_limited",
         "workspace_limited",
+        "fixture_limited",
     ]
     def __copy__(self) -> PipelineSideOutput: ...
     def __deepcopy__(self, arg0: dict) -> PipelineSideOutput: ...
@@ -803,6 +837,20 @@ class PipelineSideOutput:
         """
     @error.setter
     def error(self, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[6, 1]"]) -> None: ...
+    @property
+    def fixture_limited(self) -> bool:
+        """
+        at a virtual fixture
+        """
+    @fixture_limited.setter
+    def fixture_limited(self, arg1: bool) -> None: ...
+    @property
+    def fixtures(self) -> saras._core.csa.FixtureForceOutput:
+        """
+        saras.csa.FixtureForceOutput
+        """
+    @fixtures.setter
+    def fixtures(self, arg1: saras._core.csa.FixtureForceOutput) -> None: ...
     @property
     def handle_twist(self) -> numpy.typing.NDArray[numpy.float64]:
         """

@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy
 import numpy.typing
 import saras._core.collision
+import saras._core.csa
 import saras._core.model
 import saras._core.net
 import saras._core.pipeline
@@ -505,6 +506,10 @@ class TeleopHost:
     def set_arm_wrench(self, side: str, exerted: numpy.typing.ArrayLike) -> None:
         """
         (6,) that the tip exerts on the tissue, base frame.
+        """
+    def set_fixtures(self, side: str, word: saras._core.csa.FixtureWord) -> None:
+        """
+        saras.csa.FixtureWord; holds until the next one.
         """
     def set_nearness(self, side: str, nearness: saras._core.pipeline.NearnessInput) -> None:
         """

@@ -1427,6 +1427,7 @@ class VelocityIntegratorOutput:
         "lead_limited",
         "cone_limited",
         "insertion_limited",
+        "fixture_limited",
         "measured_jumped",
         "status",
     ]
@@ -1455,6 +1456,13 @@ class VelocityIntegratorOutput:
         """
     @cone_limited.setter
     def cone_limited(self, arg1: bool) -> None: ...
+    @property
+    def fixture_limited(self) -> bool:
+        """
+        at a virtual fixture
+        """
+    @fixture_limited.setter
+    def fixture_limited(self, arg1: bool) -> None: ...
     @property
     def has_set_point(self) -> bool:
         """

@@ -9,6 +9,8 @@ from typing import Any
 from saras.recording import Session
 from saras.recording.session import CHANNEL_STATES
 from saras.report.distances import distances
+from saras.report.fixtures import fixtures
+from saras.report.fixtures import recorded as had_fixtures
 from saras.report.motion import forces, remote_centre, trajectories
 from saras.report.overlay import overlay
 from saras.report.parts import COLORS, both_sides, chart, clutch_bands, table
@@ -27,6 +29,7 @@ def sections(session: Session, found: Findings) -> list[tuple[str, str]]:
         ("Trajectories", trajectories),
         ("Forces", forces),
         ("Distances", distances),
+        *([("Fixtures", fixtures)] if had_fixtures(session) else []),
         ("Overlay", overlay),
         ("Endoscope and contact seen", vision),
         ("Tank energy", tanks),

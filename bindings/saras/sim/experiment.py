@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from saras._core.csa import FixtureForceConfig, TeleopFixture
 from saras._core.sim import ChannelConfig, OperatorConfig, ServoArmConfig, TissueConfig
 from saras.kinematics import mesa
 from saras.sim.motion import Motion, SumOfSines
@@ -52,6 +53,7 @@ class Side:
     tissue: None is free space; ``surface_below_m`` puts the tissue's origin that far below the tip's start when its
     ``base_T_surface`` is left at the identity. clutch: intervals [s] in which the pedal is pressed.
     slave_wrench: ``truth`` (a sensor at the tip) or ``observer`` (estimated from the arm's servo model).
+    fixtures: virtual walls and guides, in the arm's base.
     """
 
     operator: OperatorConfig = field(default_factory=OperatorConfig.normal)
@@ -67,6 +69,7 @@ class Side:
     handle_start_m: tuple[float, float, float] = (0.0, 0.0, 0.2)
     clutch: tuple[tuple[float, float], ...] = ()
     slave_wrench: str = "truth"
+    fixtures: tuple[TeleopFixture, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -122,6 +125,7 @@ class Experiment:
     mapping: FrameMappingConfig = field(default_factory=FrameMappingConfig)
     transparency: TransparencyConfig = field(default_factory=transparency)
     integrator: VelocityIntegratorConfig = field(default_factory=integrator)
+    fixture_force: FixtureForceConfig = field(default_factory=FixtureForceConfig)
     restarts: tuple[Restart, ...] = ()
     adversary: Adversary | None = None
     controller: str = "laws"

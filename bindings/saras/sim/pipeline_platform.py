@@ -80,12 +80,15 @@ class PipelinePlatform:
             tank_slave=experiment.slave_tank,
             left_integrator=experiment.integrator,
             right_integrator=experiment.integrator,
+            fixture_force=experiment.fixture_force,
             observe=self._observe[0],
             observer=servo_model(experiment.sides[0]),
             handle_timeout_s=experiment.console_timeout_s,
             peer_timeout_s=experiment.exchange_timeout_s,
             session=1,
         )
+        for name, given in zip(SIDES, experiment.sides):
+            setattr(self._config, f"{name}_fixtures", list(given.fixtures))
         self.pipeline = Pipeline(self._config)
         self.master, self.slave = (PipelineTank(self, name) for name in TANKS)
         self._seq = 0

@@ -6,12 +6,13 @@ import numpy as np
 import numpy.typing as npt
 
 from saras import displacement
+from saras._core.csa import FixtureForce, FixtureIntegrator
 from saras.sim.arm_side import ArmSide
 from saras.sim.console import DownMessage, UpMessage
 from saras.sim.exchange import ExchangeMessage, TankNode
 from saras.sim.experiment import Experiment, Side
 from saras.sim.link import Link
-from saras.teleop import DisturbanceObserver, DisturbanceObserverConfig, FrameMapping, Transparency, VelocityIntegrator
+from saras.teleop import DisturbanceObserver, DisturbanceObserverConfig, FrameMapping, Transparency
 
 Array = npt.NDArray[np.float64]
 
@@ -36,7 +37,8 @@ class PlatformSide:
         self.arm = arm
         self.mapping = FrameMapping(experiment.mapping)
         self.transparency = Transparency(experiment.transparency)
-        self.integrator = VelocityIntegrator(experiment.integrator)
+        self.integrator = FixtureIntegrator(experiment.integrator, list(side.fixtures))
+        self.fixtures = FixtureForce(experiment.fixture_force, list(side.fixtures))
         self._observer = None if side.slave_wrench == "truth" else DisturbanceObserver(servo_model(side))
         self.wrench_known = True
         self._timeout_s = experiment.console_timeout_s
@@ -53,6 +55,7 @@ class PlatformSide:
         self.desired_twist: Array = np.zeros(6)
         self.slave_wrench: Array = np.zeros(6)
         self.slave_twist: Array = np.zeros(6)
+        self._hand_ahead: Array = np.zeros(3)
         self.set_point: Array = arm.measured_base_T_tip
 
     def receive(self, message: UpMessage, now: float) -> None:
@@ -77,6 +80,7 @@ class PlatformSide:
     def command(self, dt: float, now: float) -> None:
         """Frame mapping and transparency, on a new pose; without one the last command is bridged, then zero."""
         self._since_mapped_s += dt
+        guidance = self.fixtures.step(self._tip, dt, hand_ahead=self._hand_ahead).wrench
         message, self._message = self._message, None
         stale = now - self._heard_at > self._timeout_s
         if message is None and not stale:
@@ -97,6 +101,7 @@ class PlatformSide:
                 self.arm.rcm,
                 interval,
                 stale=True,
+                guidance_wrench=guidance,
             )
         else:
             mapped = self.mapping.step(
@@ -116,8 +121,10 @@ class PlatformSide:
                 clutch=message.clutch,
                 stale=not mapped.has_pose,
                 master_twist_filtered=mapped.tracked_twist_filtered,
+                guidance_wrench=guidance,
             )
         self.desired_wrench, self.desired_twist = out.desired_wrench, out.desired_twist
+        self._hand_ahead = -out.error[:3]
 
     def move(self, twist: Array, dt: float) -> None:
         """Integrate the twist that passivity let through and send the set-point to the arm."""

@@ -318,4 +318,12 @@ int TriangleMesh::nearby(const Vector3& point, double within_m, MeshPoint* out, 
   return count;
 }
 
+TriangleMesh::Triangles TriangleMesh::given_triangles() const {
+  Triangles given(triangles(), 3);
+  for (const Face& face : faces_) {
+    given.row(face.index) << face.vertex[0], face.vertex[1], face.vertex[2];
+  }
+  return given;
+}
+
 }  // namespace saras::csa

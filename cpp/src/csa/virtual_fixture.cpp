@@ -268,6 +268,7 @@ FixtureSet::FixtureSet(std::vector<Fixture> fixtures) {
 FixtureOutput FixtureSet::step(const FixtureInput& input, Seconds dt) noexcept {
   FixtureOutput output;
   output.distance_m.fill(std::numeric_limits<double>::quiet_NaN());
+  output.normals.fill(Vector3::Zero());
   if (!is_valid_time_step(dt, kInfinity)) {
     output.status = Status::kInvalidTimeStep;
     return output;
@@ -287,11 +288,12 @@ FixtureOutput FixtureSet::step(const FixtureInput& input, Seconds dt) noexcept {
     int& feature = state_.feature[i];
     const Finding finding = evaluate_any(fixture.geometry, query, feature);
     output.distance_m[i] = finding.distance_m;
+    output.normals[i] = base_R_fixtures * finding.normal;
     if (finding.distance_m < least) {
       least = finding.distance_m;
       output.nearest = static_cast<int>(i);
       output.closest = input.base_T_fixtures * finding.closest;
-      output.normal = base_R_fixtures * finding.normal;
+      output.normal = output.normals[i];
     }
   }
   for (int i = 0; i < output.rows.count; ++i) {

@@ -37,9 +37,11 @@ void PipelineConfig::validate() const {
   for (int side = 0; side < kSides; ++side) {
     mapping[at(side)].validate();
     integrator[at(side)].validate();
+    csa::fixture_set(fixtures[at(side)]);
     validate::in_range("unknown_speed_m_s", unknown_speed_m_s[at(side)], 0.0, integrator[at(side)].speed_limit_m_s);
   }
   transparency.validate();
+  fixture_force.validate();
   slave_twist.validate();
   repulsion.validate();
   tank_master.validate();

@@ -15,8 +15,9 @@ PipelineSide::PipelineSide(const PipelineConfig& config, int side)
       transparency_(config.transparency),
       tip_twist_(config.slave_twist),
       observer_(config.observer),
-      integrator_(config.integrator[static_cast<std::size_t>(side)]),
+      integrator_(config.integrator[static_cast<std::size_t>(side)], config.fixtures[static_cast<std::size_t>(side)]),
       repulsion_(config.repulsion),
+      fixtures_(config.fixture_force, config.fixtures[static_cast<std::size_t>(side)]),
       touch_R_base_(mapping_.config().touch_T_console.rotation * mapping_.config().base_T_console.rotation.conjugate()),
       observes_(config.observe),
       pushes_(config.proximity_force),
@@ -108,10 +109,16 @@ void PipelineSide::command(const SideInput& input, const NearnessInput& nearness
   output.tracked_twist = state_.tracked_twist;
   output.tracked_twist_filtered = state_.tracked_twist_filtered;
   output.handle_twist = state_.handle_twist;
+  csa::FixtureForceInput at;
+  at.base_T_tip = input.arm.base_T_tip;
+  at.hand_ahead = state_.hand_ahead;
+  at.word = {input.fixtures.on, input.fixtures.known && arm_fresh(input)};
+  output.fixtures = fixtures_.step(at, dt);
 
   if (!state_.has_tracked || input.arm.age_s == kNever || !input.arm.has_rcm) {
     state_.desired_wrench = {};
     state_.desired_twist = {};
+    state_.hand_ahead.setZero();
   } else if (output.is_mapped || stale || !engaged_) {
     // Between two datagrams the last command is kept; a side that is let go does not wait for the next one.
     TransparencyInput in;
@@ -129,10 +136,12 @@ void PipelineSide::command(const SideInput& input, const NearnessInput& nearness
       in.guidance_wrench =
           repulsion_.step({nearness.distance_m, nearness.approach_direction}, state_.since_command_s).wrench;
     }
+    in.guidance_wrench.force += output.fixtures.wrench.force;
     const TransparencyOutput out = transparency_.step(in, state_.since_command_s);
     state_.since_command_s = 0.0;
     state_.desired_wrench = out.desired_wrench;
     state_.desired_twist = out.desired_twist;
+    state_.hand_ahead = -out.error.head<3>();
     output.error = out.error;
     output.transparency = out.status;
   } else {
@@ -153,7 +162,9 @@ void PipelineSide::move(const SideInput& input, const NearnessInput& nearness, c
   output.nearness = nearness;
   const bool arm_is_there = arm_fresh(input);
   if (arm_is_there && engaged_) {
-    VelocityIntegratorInput in;
+    csa::FixtureIntegratorInput guarded;
+    guarded.word = input.fixtures;
+    VelocityIntegratorInput& in = guarded.motion;
     in.twist = twist;
     in.measured_pose = input.arm.base_T_tip;
     in.rcm = input.arm.rcm;
@@ -162,7 +173,7 @@ void PipelineSide::move(const SideInput& input, const NearnessInput& nearness, c
       in.approach_direction = nearness.approach_direction;
       in.approach_speed_limit_m_s = nearness.approach_speed_limit_m_s;
     }
-    const VelocityIntegratorOutput out = integrator_.step(in, dt);
+    const VelocityIntegratorOutput out = integrator_.step(guarded, dt);
     state_.has_set_point = out.has_set_point;
     state_.set_point = out.set_point;
     output.integrator = out.status;
@@ -171,6 +182,7 @@ void PipelineSide::move(const SideInput& input, const NearnessInput& nearness, c
     output.approach_limited = out.approach_limited;
     output.lead_limited = out.lead_limited;
     output.workspace_limited = out.cone_limited || out.insertion_limited;
+    output.fixture_limited = out.fixture_limited;
   }
   // For a silent arm there is no set-point; a side that stands repeats the last one.
   output.has_set_point = arm_is_there && state_.has_set_point;
@@ -190,6 +202,7 @@ PipelineSideState PipelineSide::state() const noexcept {
   state.tip_twist = tip_twist_.state();
   state.observer = observer_.state();
   state.integrator = integrator_.state();
+  state.fixture_force = fixtures_.state();
   state.port = port_.state();
   return state;
 }
@@ -201,6 +214,7 @@ void PipelineSide::reset(const PipelineSideState& state) noexcept {
   tip_twist_.reset(state.tip_twist);
   observer_.reset(state.observer);
   integrator_.reset(state.integrator);
+  fixtures_.reset(state.fixture_force);
   port_.reset(state.port);
 }
 

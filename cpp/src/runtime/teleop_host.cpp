@@ -109,6 +109,10 @@ void TeleopHost::set_scene(const SceneInput& scene) {
   scene_.change([&](SceneSample& sample) { sample = {scene, monotonic_ns()}; });
 }
 
+void TeleopHost::set_fixtures(int side, const csa::FixtureWord& word) {
+  sides_.at(static_cast<std::size_t>(side)).fixtures.change([&](csa::FixtureWord& newest) { newest = word; });
+}
+
 // ---- the loop
 
 void TeleopHost::step(const Wake& wake) noexcept {
@@ -208,6 +212,8 @@ void TeleopHost::gather_side(std::size_t i, std::int64_t now_ns, bool news) noex
   side.nearness.box.update();
   input.nearness = side.nearness.box.value().nearness;
   input.nearness.age_s = age_s(now_ns, side.nearness.box.value().received_ns);
+  side.fixtures.box.update();
+  input.fixtures = side.fixtures.box.value();
 }
 
 void TeleopHost::answer(const PipelineOutput& output, std::int64_t now_ns) noexcept {

@@ -10,6 +10,9 @@
 namespace saras {
 namespace {
 
+constexpr int kTurns = 8;
+constexpr double kSame_m = 1e-9;
+
 double angle_between(const Vector3& a, const Vector3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 bool command_is_finite(const VelocityIntegratorInput& input) {
@@ -38,7 +41,8 @@ void VelocityIntegratorConfig::validate() const {
 
 VelocityIntegrator::VelocityIntegrator(VelocityIntegratorConfig config) : config_(config) { config_.validate(); }
 
-VelocityIntegratorOutput VelocityIntegrator::step(const VelocityIntegratorInput& input, Seconds dt) noexcept {
+VelocityIntegratorOutput VelocityIntegrator::step(const VelocityIntegratorInput& input, Seconds dt,
+                                                  PositionBound* further) noexcept {
   VelocityIntegratorOutput output;
   output.has_set_point = state_.started;
   output.set_point = state_.set_point;
@@ -78,6 +82,9 @@ VelocityIntegratorOutput VelocityIntegrator::step(const VelocityIntegratorInput&
   }
   Pose next;
   next.translation = bound_position(state_.set_point.translation + twist.linear * dt, input, dt, output);
+  if (further != nullptr) {
+    next.translation = within_further(next.translation, input, dt, *further, output);
+  }
   next.rotation =
       bound_rotation(wanted_rotation(twist, next.translation, input.rcm, dt), input.measured_pose, dt, output);
   // Finite inputs of absurd size can still overflow.
@@ -88,7 +95,7 @@ VelocityIntegratorOutput VelocityIntegrator::step(const VelocityIntegratorInput&
   state_.set_point = output.set_point = next;
   output.lead_m = (next.translation - measured).norm();
   const bool limited = output.speed_limited || output.approach_limited || output.lead_limited || output.cone_limited ||
-                       output.insertion_limited;
+                       output.insertion_limited || output.fixture_limited;
   if (output.status == Status::kOk && limited) {
     output.status = Status::kLimited;
   }
@@ -128,6 +135,38 @@ Vector3 VelocityIntegrator::bound_position(const Vector3& wanted, const Velocity
   const Vector3 previous = state_.set_point.translation;
   const Vector3 bounded = within_lead(within_workspace(within_lead(wanted), input.rcm, output));
   return previous + clamp_norm(bounded - previous, config_.speed_limit_m_s * dt);
+}
+
+Vector3 VelocityIntegrator::within_further(const Vector3& wanted, const VelocityIntegratorInput& input, Seconds dt,
+                                           PositionBound& further, VelocityIntegratorOutput& output) const {
+  const Vector3 previous = state_.set_point.translation;
+  const Vector3 measured = input.measured_pose.translation;
+  const Vector3 towards = input.approach_direction.normalized();  // zero stays zero
+  const double lead_limit = std::max(config_.lead_limit_m, (previous - measured).norm());
+  const double approach_limit = std::max({0.0, input.approach_speed_limit_m_s * dt, towards.dot(wanted - previous)});
+  Vector3 next = further.bound(previous, wanted);
+  output.fixture_limited = next != wanted;
+  // To slide along a wall must lead neither out of the workspace nor on what is near: to a place that all allow, where
+  // turns find one.
+  for (int turn = 0; output.fixture_limited; ++turn) {
+    VelocityIntegratorOutput ignored;
+    Vector3 inside = within_workspace(next, input.rcm, ignored);
+    const double approach = towards.dot(inside - previous);
+    if (approach > approach_limit) {
+      inside = previous + approach_limit / approach * (inside - previous);
+    }
+    if ((inside - next).norm() <= kSame_m) {
+      const bool keeps = (next - measured).norm() <= lead_limit + kSame_m &&
+                         (next - previous).norm() <= config_.speed_limit_m_s * dt + kSame_m;
+      return keeps ? next : previous;
+    }
+    if (turn == kTurns) {
+      next = previous;
+      break;
+    }
+    next = further.bound(previous, inside);
+  }
+  return next;
 }
 
 Vector3 VelocityIntegrator::within_workspace(const Vector3& wanted, const Vector3& rcm,

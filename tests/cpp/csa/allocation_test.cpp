@@ -1,7 +1,10 @@
 // Nothing of the room that runs each tick allocates, whatever the input.
 #include <gtest/gtest.h>
 
+#include "csa/fixture_rig.hpp"
 #include "saras/csa/compliance.hpp"
+#include "saras/csa/fixture_force.hpp"
+#include "saras/csa/fixture_integrator.hpp"
 #include "saras/csa/master_mlc.hpp"
 #include "saras/csa/slave_mlc.hpp"
 #include "saras/csa/teleop_states.hpp"
@@ -55,6 +58,28 @@ TEST(CsaAllocation, ComplianceWrench) {
 TEST(CsaAllocation, FixtureSet) {
   FixtureInput in;
   test::expect_no_allocation(all_kinds(), in, {&in.base_T_tip.translation.x(), &in.base_T_fixtures.translation.z()});
+}
+std::vector<TeleopFixture> teleop_fixtures() {
+  return {test::teleop_fixture("plane", PlaneFixture{}),
+          test::teleop_fixture("slope", test::plane(Vector3::Zero(), Vector3(1, 0, 1))),
+          test::teleop_fixture("path", PathFixture{{Vector3::Zero(), Vector3::UnitX(), Vector3::UnitY()}, 0.01}),
+          test::teleop_fixture("in", test::box(Pose{}, Vector3(1, 1, 1), true)),
+          test::teleop_fixture("mesh", MeshFixture{square(), false, 0.0, 0.01}, true)};
+}
+
+TEST(CsaAllocation, FixtureForce) {
+  FixtureForceInput in;
+  test::expect_no_allocation(FixtureForce({}, teleop_fixtures()), in,
+                             {&in.base_T_tip.translation.x(), &in.hand_ahead.z()});
+}
+TEST(CsaAllocation, FixtureIntegrator) {
+  VelocityIntegratorConfig config;
+  config.measured_jump_m = 100.0;
+  FixtureIntegratorInput in;
+  in.motion.rcm = Vector3(0, 0, 0.1);
+  in.motion.twist.linear = Vector3(0.1, 0.1, -0.1);
+  test::expect_no_allocation(FixtureIntegrator(config, teleop_fixtures()), in,
+                             {&in.motion.measured_pose.translation.x(), &in.motion.twist.linear.z()});
 }
 TEST(CsaAllocation, SlaveMlc) {
   const dvrk::Psm psm;

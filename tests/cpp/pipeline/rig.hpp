@@ -8,6 +8,20 @@
 
 namespace saras::test {
 
+/// A floor, a region kept in and a soft path near where the tips move.
+inline std::vector<csa::TeleopFixture> fixtures() {
+  csa::TeleopFixture floor;
+  floor.fixture = {"floor", csa::PlaneFixture{Vector3(0.18, 0.0, -0.182), Vector3::UnitZ(), 0.001}, false};
+  csa::TeleopFixture region;
+  csa::HullFixture hull;
+  hull.faces.resize(4, 4);
+  hull.faces << 1, 0, 0, 0.184, -1, 0, 0, -0.176, 0, 1, 0, 0.004, 0, -1, 0, 0.004;
+  region.fixture = {"region", hull, false};
+  csa::TeleopFixture path;
+  path.fixture = {"path", csa::PathFixture{{Vector3(0.17, 0, -0.18), Vector3(0.19, 0.01, -0.18)}, 0.001}, true};
+  return {floor, region, path};
+}
+
 inline PipelineConfig pipeline_config(bool distances = true) {
   PipelineConfig config;
   config.transparency.slave_lag_s = 0.04;
@@ -31,6 +45,8 @@ inline PipelineConfig pipeline_config(bool distances = true) {
   if (distances) {
     const Parallelepiped box({0.1, -0.1, -0.5}, {0.2, 0, 0}, {0, 0.2, 0}, {0, 0, 0.25});
     config.distances.regions = {box.corners()};
+    config.fixtures[0] = fixtures();
+    config.fixtures[1] = {config.fixtures[0][1]};
   }
   return config;
 }

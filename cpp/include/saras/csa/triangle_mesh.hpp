@@ -37,6 +37,9 @@ class TriangleMesh {
 
   int triangles() const { return static_cast<int>(faces_.size()); }
   int vertices() const { return static_cast<int>(vertices_.rows()); }
+  /// As given.
+  const Vertices& given_vertices() const { return vertices_; }
+  Triangles given_triangles() const;
 
  private:
   enum class Feature : std::uint8_t { kFace, kEdge01, kEdge12, kEdge20, kVertex0, kVertex1, kVertex2 };

@@ -71,6 +71,7 @@ struct FixtureInput {
 struct FixtureOutput {
   FixtureRows rows;
   std::array<double, kMaxFixtures> distance_m;  ///< of each fixture to its border; negative: violated by that much
+  std::array<Vector3, kMaxFixtures> normals;    ///< of each: unit, towards what is allowed, base axes
   int nearest = -1;                             ///< fixture with the least distance
   Vector3 closest = Vector3::Zero();            ///< its closest point, base frame
   Vector3 normal = Vector3::Zero();             ///< its direction towards what is allowed, base axes

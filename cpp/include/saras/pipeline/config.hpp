@@ -6,6 +6,7 @@
 
 #include "saras/collision/proximity_monitor.hpp"
 #include "saras/collision/repulsive_force.hpp"
+#include "saras/csa/fixture_force.hpp"
 #include "saras/pipeline/io.hpp"
 #include "saras/teleop/disturbance_observer.hpp"
 #include "saras/teleop/energy_tank.hpp"
@@ -38,6 +39,8 @@ struct PipelineConfig {
   bool proximity_slowdown = false;                           ///< bound the speed near things and while they are unknown
   std::array<double, kSides> unknown_speed_m_s{0.02, 0.02};  ///< with it, while the nearness is unknown
   DistancesConfig distances;
+  std::array<std::vector<csa::TeleopFixture>, kSides> fixtures;  ///< virtual ones, each in its arm's base frame
+  csa::FixtureForceConfig fixture_force;
   bool observe = false;  ///< wrench on the tissue from the observer; else from ArmInput
   DisturbanceObserverConfig observer;
   Seconds handle_timeout_s = 0.06;    ///< an older handle is stale

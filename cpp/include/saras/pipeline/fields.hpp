@@ -41,6 +41,11 @@ void fields(A& a, LedgerReceiverState& x) {
   a(x.has_baseline, x.session, x.seq, x.seen_J, x.credited_J, x.ignored);
 }
 
+template <class A>
+void fields(A& a, csa::FixtureWord& x) {
+  a(x.on, x.known);
+}
+
 // ---- configurations
 
 template <class A>
@@ -86,10 +91,25 @@ void fields(A& a, DistancesConfig& x) {
   a(x.enabled, x.monitor, x.radius_m, x.other_tools, x.regions, x.scene_timeout_s);
 }
 template <class A>
+void fields(A& a, csa::TeleopFixture& x) {
+  std::vector<char> name(x.fixture.name.begin(), x.fixture.name.end());
+  auto kind = static_cast<int>(x.fixture.geometry.index());
+  std::vector<double> numbers = csa::to_numbers(x.fixture.geometry);
+  a(name, x.fixture.soft, kind, numbers, x.stiffness_N_m, x.start_m);
+  if constexpr (A::reads()) {
+    x.fixture.name.assign(name.begin(), name.end());
+    x.fixture.geometry = csa::to_geometry(kind, numbers);
+  }
+}
+template <class A>
+void fields(A& a, csa::FixtureForceConfig& x) {
+  a(x.force_limit_N, x.ramp_s, x.dt_max_s);
+}
+template <class A>
 void fields(A& a, PipelineConfig& x) {
   a(x.mapping, x.transparency, x.slave_twist, x.repulsion, x.proximity_force, x.tank_master, x.tank_slave, x.integrator,
-    x.proximity_slowdown, x.unknown_speed_m_s, x.distances, x.observe, x.observer, x.handle_timeout_s, x.arm_timeout_s,
-    x.channel_timeout_s, x.peer_timeout_s, x.nearness_timeout_s, x.session);
+    x.proximity_slowdown, x.unknown_speed_m_s, x.distances, x.fixtures, x.fixture_force, x.observe, x.observer,
+    x.handle_timeout_s, x.arm_timeout_s, x.channel_timeout_s, x.peer_timeout_s, x.nearness_timeout_s, x.session);
 }
 
 // ---- inputs
@@ -112,7 +132,7 @@ void fields(A& a, NearnessInput& x) {
 }
 template <class A>
 void fields(A& a, SideInput& x) {
-  a(x.handle, x.arm, x.channel, x.nearness);
+  a(x.handle, x.arm, x.channel, x.nearness, x.fixtures);
 }
 template <class A>
 void fields(A& a, SceneInput& x) {
@@ -126,11 +146,16 @@ void fields(A& a, PipelineInput& x) {
 // ---- outputs
 
 template <class A>
+void fields(A& a, csa::FixtureForceOutput& x) {
+  a(x.wrench, x.distance_m, x.nearest, x.closest, x.normal, x.violation_m, x.status);
+}
+template <class A>
 void fields(A& a, PipelineSideOutput& x) {
   a(x.state, x.engagement, x.has_tracked, x.is_mapped, x.tracked_pose, x.tracked_twist, x.tracked_twist_filtered,
     x.handle_twist, x.desired_wrench, x.desired_twist, x.error, x.base_wrench, x.touch_wrench, x.twist, x.has_set_point,
-    x.set_point, x.lead_m, x.wrench_known, x.tissue_wrench, x.to_guard, x.nearness, x.mapping, x.transparency,
-    x.integrator, x.speed_limited, x.approach_limited, x.lead_limited, x.workspace_limited);
+    x.set_point, x.lead_m, x.wrench_known, x.tissue_wrench, x.to_guard, x.nearness, x.fixtures, x.mapping,
+    x.transparency, x.integrator, x.speed_limited, x.approach_limited, x.lead_limited, x.workspace_limited,
+    x.fixture_limited);
 }
 template <class A>
 void fields(A& a, TankOutput& x) {
@@ -167,15 +192,27 @@ void fields(A& a, VelocityIntegratorState& x) {
   a(x.started, x.set_point, x.measured_position);
 }
 template <class A>
+void fields(A& a, csa::FixtureState& x) {
+  a(x.feature);
+}
+template <class A>
+void fields(A& a, csa::FixtureIntegratorState& x) {
+  a(x.integrator, x.fixtures);
+}
+template <class A>
+void fields(A& a, csa::FixtureForceState& x) {
+  a(x.force, x.fixtures);
+}
+template <class A>
 void fields(A& a, TipPortState& x) {
   a(x.has_last, x.base_T_tip, x.wrench, x.is_live, x.mean_wrench, x.twist);
 }
 template <class A>
 void fields(A& a, PipelineSideState& x) {
-  a(x.mapping, x.transparency, x.tip_twist, x.observer, x.integrator, x.port, x.has_tracked, x.tracked_pose,
-    x.tracked_twist, x.tracked_twist_filtered, x.handle_twist, x.slave_twist, x.observed, x.observed_wrench,
-    x.desired_wrench, x.desired_twist, x.has_set_point, x.set_point, x.since_handle_s, x.since_mapped_s,
-    x.since_command_s, x.seen_engagement, x.held);
+  a(x.mapping, x.transparency, x.tip_twist, x.observer, x.integrator, x.fixture_force, x.port, x.has_tracked,
+    x.tracked_pose, x.tracked_twist, x.tracked_twist_filtered, x.handle_twist, x.slave_twist, x.observed,
+    x.observed_wrench, x.desired_wrench, x.desired_twist, x.hand_ahead, x.has_set_point, x.set_point, x.since_handle_s,
+    x.since_mapped_s, x.since_command_s, x.seen_engagement, x.held);
 }
 template <class A>
 void fields(A& a, EnergyTankState& x) {

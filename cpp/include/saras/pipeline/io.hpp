@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "saras/collision/proximity_monitor.hpp"
+#include "saras/csa/fixture_force.hpp"
 #include "saras/net/touchball_packet.hpp"
 #include "saras/spatial/law.hpp"
 #include "saras/teleop/energy_ledger.hpp"
@@ -66,6 +67,7 @@ struct SideInput {
   ArmInput arm;
   SupervisorWord channel;
   NearnessInput nearness;
+  csa::FixtureWord fixtures;  ///< of PipelineConfig::fixtures
 };
 
 /// Where everything is that the tools could meet, in the world; read with PipelineConfig::distances.
@@ -104,8 +106,10 @@ struct PipelineSideOutput {
   Wrench tissue_wrench;    ///< zero when not known
   PortLedger to_guard;     ///< tank_master's, to the port guard
   NearnessInput nearness;  ///< as used; age_s is not told
+  csa::FixtureForceOutput fixtures;
   Status mapping = Status::kWaiting, transparency = Status::kWaiting, integrator = Status::kWaiting;
-  bool speed_limited = false, approach_limited = false, lead_limited = false, workspace_limited = false;
+  bool speed_limited = false, approach_limited = false, lead_limited = false, workspace_limited = false,
+       fixture_limited = false;
 };
 
 /// Of one tank after the step; cumulative joules since the start.

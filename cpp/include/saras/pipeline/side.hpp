@@ -1,6 +1,7 @@
 // One side of the pipeline: what belongs to one hand and its arm. The tanks lie between command() and move().
 #pragma once
 
+#include "saras/csa/fixture_integrator.hpp"
 #include "saras/pipeline/config.hpp"
 #include "saras/pipeline/tip_port.hpp"
 
@@ -11,7 +12,8 @@ struct PipelineSideState {
   TransparencyState transparency;
   TwistEstimatorState tip_twist;
   DisturbanceObserverState observer;
-  VelocityIntegratorState integrator;
+  csa::FixtureIntegratorState integrator;
+  csa::FixtureForceState fixture_force;
   TipPortState port;
   bool has_tracked = false;
   Pose tracked_pose;
@@ -21,6 +23,7 @@ struct PipelineSideState {
   Wrench observed_wrench;
   Wrench desired_wrench;
   Twist desired_twist;
+  Vector3 hand_ahead = Vector3::Zero();  ///< of the tip, as transparency last said [m]
   bool has_set_point = false;
   Pose set_point;
   Seconds since_handle_s = 0.0;   ///< since the last new handle
@@ -67,8 +70,9 @@ class PipelineSide {
   Transparency transparency_;
   TwistEstimator tip_twist_;
   DisturbanceObserver observer_;
-  VelocityIntegrator integrator_;
+  csa::FixtureIntegrator integrator_;
   RepulsiveForce repulsion_;
+  csa::FixtureForce fixtures_;
   TipPort port_;
   Quaternion touch_R_base_;
   bool observes_, pushes_, slows_;

@@ -20,6 +20,8 @@ namespace detail {
 template <class Self>
 class WordArchive {
  public:
+  /// Whether values are filled from words: what is no field by itself is then made of what was read.
+  static constexpr bool reads() { return Self::kReads; }
   template <class... T>
   void operator()(T&&... values) {
     (take(values), ...);
@@ -79,6 +81,7 @@ class WordArchive {
 /// Appends to a vector of words.
 class WordWriter : public detail::WordArchive<WordWriter> {
  public:
+  static constexpr bool kReads = false;
   explicit WordWriter(Words& words) : words_(words) {}
   template <class T>
   void number(T& value) {
@@ -100,6 +103,7 @@ class WordWriter : public detail::WordArchive<WordWriter> {
 /// Reads from words; throws ProtocolError when they end too early.
 class WordReader : public detail::WordArchive<WordReader> {
  public:
+  static constexpr bool kReads = true;
   WordReader(const std::uint64_t* words, std::size_t size) : next_(words), left_(size) {}
   template <class T>
   void number(T& value) {

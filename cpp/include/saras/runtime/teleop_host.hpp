@@ -65,6 +65,8 @@ class TeleopHost {
   void set_supervisor(int side, ChannelState state, std::uint64_t engagement, bool clutch);
   void set_nearness(int side, const NearnessInput& nearness);
   void set_scene(const SceneInput& scene);
+  /// Holds until the next one.
+  void set_fixtures(int side, const csa::FixtureWord& word);
 
   // ---- outputs
 
@@ -114,6 +116,7 @@ class TeleopHost {
     Inbox<ArmSample> arm;
     Inbox<WordSample> word;
     Inbox<NearnessSample> nearness;
+    Inbox<csa::FixtureWord> fixtures;
     std::uint64_t seen_poses = 0;  ///< of the loop
     std::int64_t seen_stamp_ns = 0;
     std::int64_t handle_ns = 0;

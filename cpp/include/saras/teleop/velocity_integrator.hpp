@@ -34,6 +34,19 @@ struct VelocityIntegratorInput {
   double approach_speed_limit_m_s = std::numeric_limits<double>::infinity();  ///< along it; retreat is free
 };
 
+/// A further bound of the set-point, such as virtual fixtures.
+class PositionBound {
+ public:
+  PositionBound() = default;
+  PositionBound(const PositionBound&) = default;
+  PositionBound(PositionBound&&) = default;
+  PositionBound& operator=(const PositionBound&) = default;
+  PositionBound& operator=(PositionBound&&) = default;
+  virtual ~PositionBound() = default;
+  /// The allowed position nearest to `wanted`, of a set-point that is at `from`; at worst `from` itself.
+  virtual Vector3 bound(const Vector3& from, const Vector3& wanted) noexcept = 0;
+};
+
 struct VelocityIntegratorOutput {
   bool has_set_point = false;      ///< false until a measured pose was seen: send nothing
   Pose set_point;                  ///< base_T_tip, always finite, quaternion unit
@@ -43,6 +56,7 @@ struct VelocityIntegratorOutput {
   bool lead_limited = false;       ///< set-point too far ahead of measured
   bool cone_limited = false;       ///< at the edge of the cone
   bool insertion_limited = false;  ///< at the least or greatest insertion
+  bool fixture_limited = false;    ///< held back by the further bound
   bool measured_jumped = false;    ///< measured pose refused; lasts until reset or until it is back
   Status status = Status::kOk;
 };
@@ -62,13 +76,17 @@ struct VelocityIntegratorState {
 /// A workspace bound that is already broken (start outside, trocar moved) moves nothing by itself: it
 /// only refuses to go further out.
 ///
+/// A further bound, where there is one, comes after all of these and may only shorten the step; where what it allows
+/// leads out of workspace or lead, the set-point stands.
+///
 /// Stale twist = zero twist (STALE). dt above dt_max_s: one nominal_dt_s is integrated (INVALID_TIME_STEP);
 /// dt not finite or <= 0: held. Twist or limits not finite: zero twist (INVALID_INPUT). Measured pose or trocar
 /// not finite, or a jump of the measured pose: held (INVALID_INPUT).
 class VelocityIntegrator {
  public:
   explicit VelocityIntegrator(VelocityIntegratorConfig config);
-  VelocityIntegratorOutput step(const VelocityIntegratorInput& input, Seconds dt) noexcept;
+  VelocityIntegratorOutput step(const VelocityIntegratorInput& input, Seconds dt,
+                                PositionBound* further = nullptr) noexcept;
   /// Without an argument: starts from measured again.
   void reset(const VelocityIntegratorState& state = {}) { state_ = state; }
   const VelocityIntegratorState& state() const { return state_; }
@@ -78,6 +96,8 @@ class VelocityIntegrator {
   Twist limit_command(const VelocityIntegratorInput& input, VelocityIntegratorOutput& output) const;
   Vector3 bound_position(const Vector3& wanted, const VelocityIntegratorInput& input, Seconds dt,
                          VelocityIntegratorOutput& output) const;
+  Vector3 within_further(const Vector3& wanted, const VelocityIntegratorInput& input, Seconds dt,
+                         PositionBound& further, VelocityIntegratorOutput& output) const;
   Vector3 within_workspace(const Vector3& wanted, const Vector3& rcm, VelocityIntegratorOutput& output) const;
   Quaternion wanted_rotation(const Twist& twist, const Vector3& position, const Vector3& rcm, Seconds dt) const;
   Quaternion bound_rotation(const Quaternion& wanted, const Pose& measured, Seconds dt,
