@@ -39,6 +39,7 @@ class CsaTeleop(CsaNode):
         super().__init__("csa_teleop")
         setup = self.setup
         self.enabled = self.params.flag("enable")
+        rospy.set_param("~enable", False)  # one that died does not begin by itself when it is started again
         pose, timeout_s = convert.in_frame(self.frame, convert.pose), setup.timeout_s
         self.hand = self.input("/csa/master/measured_cp", PoseStamped, pose, timeout_s=timeout_s)
         self.tip = self.input("/csa/slave/setpoint_cp", PoseStamped, pose, timeout_s=timeout_s)
@@ -241,7 +242,7 @@ class CsaTeleop(CsaNode):
 
     def _on_clear(self) -> tuple[bool, str]:
         with self.lock:
-            return self._picking(self.picker.clear, self.picker.closed)
+            return self._picking(self.picker.clear, True)  # a region may be older than this process
 
     def _picking(self, act, was_closed: bool) -> tuple[bool, str]:
         """The closed region goes out on /csa/modeler/roi, an empty polygon when it ends."""

@@ -17,7 +17,7 @@ import numpy as np
 import rosgraph
 import rospy
 import rostest
-from geometry_msgs.msg import PointStamped, PolygonStamped, PoseStamped, WrenchStamped
+from geometry_msgs.msg import Point32, PointStamped, PolygonStamped, PoseStamped, WrenchStamped
 from saras_ros1.msg import CsaAdmittance, CsaPrimitive, CsaTeleopState
 from saras_ros1.srv import SetGains, SetPrimitive
 from sensor_msgs.msg import JointState
@@ -246,7 +246,43 @@ class Csa(unittest.TestCase):
         self.surgeon.press("present", 1)
         self.reach(FULL, "after the operator came back")
 
-    def test_b5_up_again_slave_and_proxy_meet(self) -> None:
+    def test_b5_a_killed_teleop_is_a_hold_until_it_is_enabled_again(self) -> None:
+        self.reach(FULL)
+        region = rospy.Publisher("/csa/modeler/roi", PolygonStamped, queue_size=1, latch=True)
+        message = PolygonStamped()
+        message.header.frame_id = "PSM1"
+        centre = convert.pose(self.tip.message)[:3, 3]
+        corners = [centre + np.array([x, y, 0.0]) for x, y in ((-0.02, -0.02), (0.02, -0.02), (0.0, 0.02))]
+        message.polygon.points = [Point32(*corner.tolist()) for corner in corners]
+        region.publish(message)
+        wait_until(lambda: self.did.message.fixture == "region_of_interest", "a region older than csa_teleop")
+        for heard in (self.held, self.did, self.set_point, self.told):
+            heard.clear()
+        os.kill(pid_of("/csa_teleop"), signal.SIGKILL)
+        wait_until(lambda: any(m.hold and m.reason == "STALE" for m in list(self.did.all)), "the slave's hold")
+        wait_until(lambda: self.held.all, "the master is told to hold")
+        self.holds_because("not enabled")
+        self.assertFalse(self.told.message.enabled)
+        wait_until(lambda: "not enabled" in self.did.message.reason, self.state)
+        self.assertEqual(self.did.message.fixture, "")
+        path = np.array([convert.pose(m)[:3, 3] for m in self.set_point.all])
+        self.assertLess(np.linalg.norm(np.diff(path, axis=0), axis=1).max(), 0.003)
+        for heard in (self.command, self.torques):
+            heard.clear()
+        rospy.sleep(0.5)
+        self.assertEqual((self.command.all, self.torques.all), ([], []))
+        self.set_point.clear()
+        rospy.ServiceProxy("/csa/teleop/enable", SetBool)(True)
+        self.reach(FULL, "after csa_teleop came back and was enabled")
+        self.force_settles(2.0)
+        path = np.array([convert.pose(m)[:3, 3] for m in self.set_point.all])
+        self.assertLess(np.linalg.norm(np.diff(path, axis=0), axis=1).max(), 0.003)
+        wait_until(lambda: self.did.message.fixture == "region_of_interest", "the region is still there")
+        self.surgeon.press("pick", 2)
+        wait_until(lambda: self.did.message.fixture == "", "it can be cleared")
+        self.surgeon.press("pick", 0)
+
+    def test_b6_up_again_slave_and_proxy_meet(self) -> None:
         self.surgeon.go(DOWN + np.array([0.0, 0.0, 0.03]), 3.0)
         self.reach(CsaTeleopState.NO_CONTACT)
         wait_until(lambda: self.told.message.mismatch_m < 0.0005, lambda: f"mismatch {self.told.message.mismatch_m}")
