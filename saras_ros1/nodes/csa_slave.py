@@ -14,7 +14,7 @@ import numpy as np
 import rospy
 from geometry_msgs.msg import PolygonStamped, PoseStamped, TwistStamped, WrenchStamped
 from sensor_msgs.msg import JointState
-from std_msgs.msg import Float64
+from std_msgs.msg import Float64, String
 
 from saras import ConfigError, csa
 from saras.csa import arms
@@ -82,9 +82,13 @@ class CsaSlave(CsaNode):
 
     def _measured_period(self) -> float:
         """How often the arm speaks: the bound of K_g is that of the real period. Raises StartupError."""
-        self.wait_for(
-            lambda: self.joints.received > 1, self.setup.start_timeout_s, lambda: f"nothing from {self.joints.topic}"
-        )
+        why = self.input(f"/{self.slave}/hold_reason", String) if self.setup.slave["type"] == "udp" else None
+
+        def silent() -> str:
+            more = f": {self.slave} says {why.message.data}" if why is not None and why.message is not None else ""
+            return f"nothing from {self.joints.topic}{more}"
+
+        self.wait_for(lambda: self.joints.received > 1, self.setup.start_timeout_s, silent)
         count, begin = self.joints.received, time.monotonic()
         time.sleep(MEASURE_S)
         heard = self.joints.received - count

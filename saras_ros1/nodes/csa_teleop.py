@@ -13,6 +13,7 @@ import numpy as np
 import rospy
 from crtk_msgs.msg import OperatingState
 from geometry_msgs.msg import Point32, PointStamped, PolygonStamped, PoseStamped, Vector3Stamped, WrenchStamped
+from std_msgs.msg import String
 from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 
 from saras import ConfigError, csa
@@ -129,10 +130,12 @@ class CsaTeleop(CsaNode):
             side = Channel(self, arm["side"], inherits=True)
             return lambda: "" if side.engaged else f"{arm['side']} is not engaged ({side.input.topic})"
         source = self.input(f"/{arm['name']}/operating_state", OperatingState)
+        why = self.input(f"/{arm['name']}/hold_reason", String) if arm["type"] == "udp" else None
 
         def why_not() -> str:
             state = "ENABLED" if source.message is None else source.message.state
-            return "" if state == "ENABLED" else f"{source.topic} says {state}"
+            more = f" ({why.message.data})" if why is not None and why.message is not None else ""
+            return "" if state == "ENABLED" else f"{source.topic} says {state}{more}"
 
         return why_not
 

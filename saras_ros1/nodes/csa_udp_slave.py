@@ -1,5 +1,6 @@
 """csa_udp_slave: a slave arm elsewhere on the network (CSA UDP, docs/protocols.md) as an arm with CRTK's topics.
 
+For a system file whose slave is of type udp; of another one it does nothing.
 Gives /<arm>/measured_js, measured_cp, measured_cv and, while the slave has a force, measured_cf, with one stamp; takes
 servo_jp, servo_cp and state_command. A HOLD is PAUSED with its name on hold_reason, and is left by resume only.
 """
@@ -8,7 +9,6 @@ from __future__ import annotations
 
 import threading
 import time
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,46 +18,31 @@ from geometry_msgs.msg import PoseStamped, TwistStamped, WrenchStamped
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
-from saras.console.link import Address
-from saras.csa.udp import GateConfig, HoldReason, PlatformLink, RemoteSlave, RemoteSlaveConfig
+from saras.csa.udp import HoldReason, PlatformLink, RemoteSlave
 from saras.net import CsaUp
 from saras.net.keys import load as load_keys
 from saras_ros1 import convert
-from saras_ros1.csa_node import joint_state
-from saras_ros1.node import Node, run
+from saras_ros1.csa_node import CsaNode, joint_state
+from saras_ros1.node import run
 
 CLOCK_STEP_NS = 1_000_000_000
 
 
-class CsaUdpSlave(Node):
+class CsaUdpSlave(CsaNode):
     """One thread receives and publishes, one sends each period; the state machine is theirs under the lock."""
 
     def __init__(self) -> None:
         super().__init__("csa_udp_slave")
-        params = self.params
-        self.arm = params.text("arm")
-        self.frame = params.text("frame", empty=True) or self.arm
-        self.names = params.texts("joint_names")
-        self.period_s = params.number("period_s", 0.001, 0.1)
-        age_limit_s = params.number("age_limit_s", 0.005, 1.0)
-        gate = GateConfig(
-            joint_reach=tuple(params.vector("joint_reach", len(self.names), 1e-4, 3.2).tolist()),
-            reach_m=params.number("reach_m", 1e-4, 0.2),
-            reach_rad=params.number("reach_rad", 1e-3, 3.2),
-            timeout_s=params.number("set_point_timeout_s", 0.01, 1.0),
-        )
-        self.remote = RemoteSlave(
-            RemoteSlaveConfig(
-                gate, params.number("state_timeout_s", 0.01, 1.0), params.number("begin_timeout_s", 0.05, 10.0)
-            )
-        )
-        self._enable_once = params.flag("auto_enable")
-        key_file = params.text("key_file", empty=True)
-        bind = Address(params.text("bind_host"), params.integer("bind_port", 0, 65535))
-        slave = Address(params.text("slave_host"), params.integer("slave_port", 1, 65535))
-        params.finish()
-        keys = load_keys(Path(key_file).expanduser()) if key_file else None
-        self.link = PlatformLink(bind, slave, age_limit_s, keys)
+        udp = self.setup.udp()
+        self.remote: RemoteSlave | None = None
+        if udp is None:
+            rospy.loginfo(f"{self.name}: {self.slave} is a {self.setup.slave['type']}: nothing to do")
+            return
+        self.arm, self.names = self.slave, self.setup.slave_model.joint_names
+        self.remote = RemoteSlave(udp.remote)
+        self._enable_once = udp.auto_enable
+        keys = load_keys(udp.key_file) if udp.key_file is not None else None
+        self.link = PlatformLink(udp.bind, udp.slave, udp.age_limit_s, keys)
         rospy.on_shutdown(self.link.close)
 
         self._anchor_ns: int | None = None
@@ -80,7 +65,7 @@ class CsaUdpSlave(Node):
         self._subscribe("servo_jp", JointState, convert.positions, self.remote.servo_jp)
         self._subscribe("servo_cp", PoseStamped, convert.in_frame(self.frame, convert.pose), self.remote.servo_cp)
         threading.Thread(target=self._receive, daemon=True).start()
-        self.every(self.period_s, self._send)
+        self.every(udp.period_s, self._send)
 
     def _subscribe(self, name: str, message_class: type, read: Any, servo: Any) -> None:
         def on_message(message: Any) -> None:
@@ -127,16 +112,16 @@ class CsaUdpSlave(Node):
                 self.link.last_refusal = ""
 
     def _take(self, up: CsaUp) -> None:
-        if len(up.position) != len(self.names):
-            self.link.last_refusal = f"{len(up.position)} joints: {self.name}/joint_names has {len(self.names)}"
-            return
         new_run = self.remote.up is None or self.remote.up.session != up.session
         self.remote.take(up)
+        if self.remote.up is not up:  # not an arm of these kinematics: nothing of it is published
+            self._tell()
+            return
         if new_run:
             self._anchor_ns = None
         stamp_ns = self._stamp_ns(up.sender_time_ns)
         stamp = rospy.Time(*divmod(stamp_ns, 1_000_000_000))
-        joints = joint_state(tuple(self.names), stamp, position=up.position, velocity=up.velocity, effort=up.effort)
+        joints = joint_state(self.names, stamp, position=up.position, velocity=up.velocity, effort=up.effort)
         self.outputs["measured_js"].publish(joints)
         self.outputs["measured_cp"].publish(convert.pose_msg(up.base_T_tip, self.frame, stamp_ns))
         self.outputs["measured_cv"].publish(convert.twist_msg(up.tip_twist, self.frame, stamp_ns))
@@ -187,6 +172,8 @@ class CsaUdpSlave(Node):
 
     def report(self) -> dict:
         """Hold, link and its counts."""
+        if self.remote is None:
+            return {}
         age_s, round_trip_s = self.link.age_s(time.monotonic_ns()), self.link.round_trip_s
         return {
             "hold": self.remote.hold.name,

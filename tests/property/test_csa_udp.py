@@ -256,6 +256,24 @@ def test_a_restarted_slave_is_a_hold(rig):
     rig.comes_back()
 
 
+def test_a_slave_with_other_joints_is_not_taken(rig):
+    rig.q = np.zeros(7)
+    rig.tick(count=3)
+    assert rig.remote.hold is HoldReason.JOINTS_DIFFER and rig.remote.up is None
+    ((_, text),) = rig.remote.take_events()
+    assert "it has 7, must be 6" in text
+    with pytest.raises(ValueError, match="JOINTS_DIFFER"):
+        rig.remote.state_command("enable")
+    rig.q = np.zeros(6)
+    rig.engage()
+    kept, rig.q = rig.q, np.zeros(5)
+    rig.target, rig.gate.take = kept, lambda *_: False
+    rig.holds(HoldReason.JOINTS_DIFFER, rig.tick())
+    assert len(rig.remote.up.position) == 6
+    rig.q, rig.gate = kept, SlaveGate(GATE)
+    rig.comes_back()
+
+
 def test_a_slave_in_fault_is_a_hold(rig):
     rig.engage()
     rig.up_state = CsaSlaveState.FAULT

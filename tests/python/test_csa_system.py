@@ -11,6 +11,8 @@ import pytest
 
 import saras
 from saras import cli, csa
+from saras.kinematics import dvrk, mesa
+from saras.net import keys
 
 jsonschema = pytest.importorskip("jsonschema")
 from saras.csa import system
@@ -70,6 +72,58 @@ def test_each_kind_of_fixture_is_built_from_a_file(tmp_path: Path) -> None:
     assert distance[2] == pytest.approx(0.002 - 0.085 / np.sqrt(2.0))
     assert distance[6] == pytest.approx(0.015 - 0.01 - 0.002, abs=1e-4)
     assert loaded.experiment().region_m == 0.01
+
+
+UDP = json.loads((Path(__file__).parents[2] / "config" / "csa" / "udp.json").read_text())
+
+
+def test_a_udp_slave_has_the_kinematics_that_the_file_names(tmp_path: Path) -> None:
+    assert system.load(SIMULATED).setup().udp() is None
+    psm = system.load(saved(tmp_path, UDP)).setup()
+    np.testing.assert_allclose(psm.slave_model.forward(np.full(6, 0.1)), dvrk.psm().forward(np.full(6, 0.1)))
+    settings = psm.udp()
+    assert (settings.bind.port, settings.slave.port, settings.key_file) == (48030, 48031, None)
+    assert settings.remote.gate.joint_reach == (0.3, 0.3, 0.02, 0.3, 0.3, 0.3)
+    document, trocar = copy.deepcopy(UDP), [0.18, 0.0, -0.1]
+    key = tmp_path / "link.keys"
+    keys.save(key, keys.draw())
+    document["arms"][1]["kinematics"] = {"type": "saras_arm", "trocar_m": trocar}
+    document["arms"][1]["link"] = {"key_file": "link.keys", "bind_host": "0.0.0.0", "state_timeout_s": 0.5}
+    document["arms"][1]["joint_reach"] = [0.1, 0.2, 0.3, 0.4, 0.05, 0.6]
+    saras_arm = system.load(saved(tmp_path, document)).setup()
+    assert saras_arm.slave_model.joint_names == mesa.JOINT_NAMES
+    assert [f.name for f in saras_arm.slave_model.fixtures] == ["trocar"]
+    settings = saras_arm.udp()
+    assert settings.key_file == key and settings.remote.state_timeout_s == 0.5
+    assert settings.remote.gate.joint_reach == (0.1, 0.2, 0.3, 0.4, 0.05, 0.6)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda a: a.pop("kinematics"), r"\$\.arms\[1\] = .*'kinematics' is a required property"),
+        (
+            lambda a: a["kinematics"].update(type="robot"),
+            r"\$\.arms\[1\]\.kinematics\.type = \"robot\": must be one of dvrk_",
+        ),
+        (lambda a: a["kinematics"].update(side="left"), r"\$\.arms\[1\]\.kinematics = .*'side'"),
+        (lambda a: a["kinematics"].update(tool="123"), r"\$\.arms\[1\]\..*123"),
+        (lambda a: a.update(joint_reach=[0.3] * 7), r"\$\.arms\[1\]\.joint_reach = .*7 numbers: must be 6.*dvrk_psm"),
+        (lambda a: a.update(joint_reach=[0.0] * 6), r"\$\.arms\[1\]\.joint_reach\[0\] = 0"),
+        (lambda a: a["link"].update(slave_port=0), r"\$\.arms\[1\]\.link\.slave_port = 0"),
+        (lambda a: a["link"].update(state_timeout_s=5), r"\$\.arms\[1\]\.link\.state_timeout_s = 5"),
+        (lambda a: a["link"].update(key="x"), r"\$\.arms\[1\]\.link = .*'key'"),
+        (lambda a: a["link"].update(key_file="no.keys"), r"\$\.arms\[1\]\.link\.key_file = 'no.keys': no file"),
+        (lambda a: a["link"].update(bind_host="0.0.0.0"), r"\$\.arms\[1\]\.link\.bind_host = 0\.0\.0\.0:.*key file"),
+        (lambda a: a.update(capabilities=["servo_jp"]), r"\$\.arms\[1\]\.capabilities = .*its joints"),
+    ],
+)
+def test_refusals_of_a_udp_slave_name_the_path_in_the_file(tmp_path: Path, change, words: str) -> None:
+    document = copy.deepcopy(UDP)
+    change(document["arms"][1])
+    with pytest.raises(saras.ConfigError, match=words) as refused:
+        system.load(saved(tmp_path, document))
+    assert "system.json" in str(refused.value)
 
 
 def test_a_file_is_simulated_as_it_says() -> None:

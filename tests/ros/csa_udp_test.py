@@ -15,6 +15,7 @@ import rospy
 import rostest
 from crtk_msgs.msg import OperatingState, StringStamped
 from geometry_msgs.msg import PoseStamped, TwistStamped
+from rosgraph_msgs.msg import Log
 from saras_ros1.msg import CsaAdmittance, CsaTeleopState
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
@@ -28,6 +29,7 @@ from saras_ros1.csa_surgeon import Surgeon
 DOWN = np.array([0.0, 0.0, -0.014])
 FULL = CsaTeleopState.FULL_CONTACT
 SLAVES = ROOT / "examples" / "udp_slave"
+SYSTEM = ROOT / "tests" / "ros" / "csa_udp.json"
 ADDRESSES = ["--listen", "127.0.0.1:48131", "--platform", "127.0.0.1:48130", "--timeout-s", "1"]
 
 
@@ -49,7 +51,8 @@ class CsaUdp(unittest.TestCase):
         cls.twist = Newest("/REMOTE/measured_cv", TwistStamped)
         cls.state_command = rospy.Publisher("/REMOTE/state_command", StringStamped, queue_size=5)
         cls.teleoperate = rospy.ServiceProxy("/csa/teleop/enable", SetBool)
-        cls.surgeon = Surgeon(load(ROOT / "config" / "csa" / "udp.json").setup())
+        cls.log = Newest("/rosout", Log)
+        cls.surgeon = Surgeon(load(SYSTEM).setup())
         wait_until(lambda: cls.state.message and cls.state_command.get_num_connections(), "csa_udp_slave")
 
     @classmethod
@@ -59,8 +62,8 @@ class CsaUdp(unittest.TestCase):
         cls.scratch.cleanup()
 
     @classmethod
-    def begin(cls, kind: str) -> None:
-        cls.process = subprocess.Popen([*cls.commands[kind], *ADDRESSES])
+    def begin(cls, kind: str, *more: str) -> None:
+        cls.process = subprocess.Popen([*cls.commands[kind], *ADDRESSES, *more])
 
     @classmethod
     def end(cls, how: int = signal.SIGKILL) -> None:
@@ -124,7 +127,21 @@ class CsaUdp(unittest.TestCase):
         self.assertEqual(self.state.message.state, "DISABLED")
         self.assertIsNone(self.joints.message)
 
-    def test_b_it_is_a_crtk_arm(self) -> None:
+    def test_b_a_slave_with_other_joints_is_refused(self) -> None:
+        self.begin("c", "--joints", "7")
+        self.says("DISABLED", "JOINTS_DIFFER")
+        self.state_command.publish(StringStamped(string="enable"))
+        wait_until(lambda: any("it has 7, must be 6" in m.msg for m in list(self.log.all)), "how many")
+        wait_until(
+            lambda: any("REMOTE says JOINTS_DIFFER" in m.msg for m in list(self.log.all)),
+            "csa_slave says why it does not start",
+            60.0,
+        )
+        self.assertEqual(self.state.message.state, "DISABLED")
+        self.assertIsNone(self.joints.message)
+        self.end()
+
+    def test_c_it_is_a_crtk_arm(self) -> None:
         self.begin("c")
         wait_until(lambda: self.joints.message and self.tip.message and self.twist.message, "the slave's state")
         self.says("DISABLED", "DISABLED")
@@ -150,12 +167,13 @@ class CsaUdp(unittest.TestCase):
         self.says("PAUSED", "SET_POINT_REFUSED")
         np.testing.assert_allclose(self.joints.next().position, start, atol=1e-3)
 
-    def test_c_the_whole_loop_and_a_slave_that_freezes(self) -> None:
+    def test_d_the_whole_loop_and_a_slave_that_freezes(self) -> None:
         self.rouse("resume")
         self.presses()
         self.process.send_signal(signal.SIGSTOP)
         self.says("PAUSED", "SLAVE_LOST")
-        wait_until(lambda: self.told.message.hold, "the teleoperation's hold")
+        wait_until(lambda: "PAUSED (SLAVE_LOST)" in self.told.message.reason, lambda: self.told.message.reason)
+        self.assertTrue(self.told.message.hold)
         self.process.send_signal(signal.SIGCONT)
         wait_until(lambda: "says PAUSED" in self.told.message.reason, lambda: self.told.message.reason)
         before = convert.pose(self.tip.next())[:3, 3]
@@ -165,7 +183,7 @@ class CsaUdp(unittest.TestCase):
         self.rouse("resume")
         wait_until(lambda: not self.told.message.hold, lambda: self.told.message.reason)
 
-    def test_d_a_slave_that_dies_and_another_one(self) -> None:
+    def test_e_a_slave_that_dies_and_another_one(self) -> None:
         self.end()
         self.says("PAUSED", "SLAVE_LOST")
         self.rests()

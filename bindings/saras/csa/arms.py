@@ -23,10 +23,11 @@ CAPABILITIES = {
     "simulated_saras": ["measured_js", "measured_cp", "measured_cf", "servo_jp"],
     "dvrk_psm": ["measured_js", "measured_cp", "measured_cf", "servo_jp"],
     "saras_arm": ["measured_js", "measured_cf", "servo_cp"],
+    "udp": ["measured_js", "measured_cp", "measured_cf", "servo_jp", "servo_cp"],
 }
 ROLES = {
     "master": ("simulated_hand", "simulated_mtm", "dvrk_mtm"),
-    "slave": ("simulated_psm", "simulated_saras", "dvrk_psm", "saras_arm"),
+    "slave": ("simulated_psm", "simulated_saras", "dvrk_psm", "saras_arm", "udp"),
 }
 SIMULATED = ("simulated_hand", "simulated_mtm", "simulated_psm", "simulated_saras")
 
@@ -87,6 +88,8 @@ def base_frame(arm: Json) -> str:
 
 def slave_model(arm: Json) -> ArmModel:
     """Kinematics of a slave of a system file. Raises ConfigError for an unknown instrument."""
+    if arm["type"] == "udp":
+        return slave_model(arm["kinematics"])
     if arm["type"] in ("simulated_saras", "saras_arm"):
         return _saras(np.array(arm.get("trocar_m", mesa.NOMINAL_RCM), dtype=float))
     psm = dvrk.psm(arm.get("tool", "400006"), arm.get("body", "classic"))

@@ -13,6 +13,7 @@ from saras import ConfigError, csa, sim
 from saras.csa import arms
 from saras.csa.surface import MeshSurface, PlaneSurface, Surface, load_mesh, rotation
 from saras.csa.system_fixtures import UP, fixture
+from saras.csa.udp import UdpSettings, udp_settings
 
 Array = NDArray[np.float64]
 Json = dict[str, Any]
@@ -65,6 +66,12 @@ class Setup:
     def slave_R_master(self) -> Array:
         """(3, 3) turns the master's axes into the slave's."""
         return rotation(self.teleop.get("master_rpy_rad", [0.0, 0.0, 0.0]))
+
+    def udp(self) -> UdpSettings | None:
+        """The link to a slave of type udp; None: it is none. Raises ConfigError."""
+        if self.slave["type"] != "udp":
+            return None
+        return udp_settings(self.slave, len(self.slave_model.joint_names), self.path.parent)
 
     def teleop_config(self, **changes: Any) -> csa.CsaTeleopConfig:
         """Raises ConfigError."""

@@ -16,6 +16,7 @@ from saras import ConfigError, sim
 from saras.csa import arms
 from saras.csa.setup import Setup
 from saras.csa.simulation import CsaExperiment
+from saras.csa.udp import udp_settings
 
 #: Bytes of a file; a hundred times what four teleoperations need.
 MAX_BYTES = 1 << 20
@@ -114,6 +115,7 @@ def load(path: str | Path) -> System:
         raise ConfigError(f"{path}: no JSON: {error}") from error
     _check_schema(path, document)
     _check_roles(path, document)
+    _check_links(path, document)
     system = System(path, document)
     for index, name in enumerate(system.teleops):
         try:
@@ -161,6 +163,17 @@ def _check_schema(path: Path, document: Any) -> None:
     value = json.dumps(error.instance)
     shown = value if len(value) <= 60 else value[:57] + "..."
     raise ConfigError(f"{path}: {_place(error.absolute_path)} = {shown}: {error.message}")
+
+
+def _check_links(path: Path, document: Json) -> None:
+    """What the schema cannot know of UDP slaves."""
+    for index, arm in enumerate(document["arms"]):
+        if arm["type"] != "udp":
+            continue
+        try:
+            udp_settings(arm, len(arms.slave_model(arm).joint_names), path.parent)
+        except ConfigError as error:
+            raise ConfigError(f"{path}: $.arms[{index}].{error}") from error
 
 
 def _check_roles(path: Path, document: Json) -> None:

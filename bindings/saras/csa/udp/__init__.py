@@ -8,6 +8,7 @@ No ROS. A slave in C that needs nothing of this package: examples/udp_slave.
 from saras.csa.udp.gate import GateConfig, SlaveGate
 from saras.csa.udp.link import PlatformLink, SlaveLink
 from saras.csa.udp.remote import HoldReason, RemoteSlave, RemoteSlaveConfig
+from saras.csa.udp.settings import UdpSettings, udp_settings
 
 __all__ = [
     "GateConfig",
@@ -17,4 +18,6 @@ __all__ = [
     "RemoteSlaveConfig",
     "SlaveGate",
     "SlaveLink",
+    "UdpSettings",
+    "udp_settings",
 ]

@@ -28,6 +28,7 @@ class HoldReason(Enum):
     WAITING = "the slave was never heard"
     DISABLED = "nobody has enabled it"
     PAUSED = "by command"
+    JOINTS_DIFFER = "the slave has not the joints of its kinematics"
     SLAVE_LOST = "the slave is silent"
     SLAVE_RESTARTED = "the slave was started anew"
     SLAVE_FAULT = "the slave is not ready"
@@ -37,6 +38,7 @@ class HoldReason(Enum):
 
 
 ADVICE = {
+    HoldReason.JOINTS_DIFFER: "start another slave or mend the system file, then enable or resume",
     HoldReason.SLAVE_LOST: "start the slave or mend its link, then resume",
     HoldReason.SLAVE_RESTARTED: "look where it stands, then resume",
     HoldReason.SLAVE_FAULT: "mend the slave, then resume",
@@ -82,6 +84,7 @@ class RemoteSlave:
         self._engagement = 0
         self._begun_ns = 0
         self._age_s = float("inf")
+        self._other_joints = ""
 
     @property
     def engaged(self) -> bool:
@@ -111,6 +114,8 @@ class RemoteSlave:
         self.hold = HoldReason.DISABLED if self.machine.state == "DISABLED" else HoldReason.PAUSED
 
     def _missing(self) -> HoldReason:
+        if self._other_joints:
+            return HoldReason.JOINTS_DIFFER
         if self.up is None:
             return HoldReason.WAITING
         if not self._age_s <= self.config.state_timeout_s:
@@ -142,12 +147,18 @@ class RemoteSlave:
     # ---- what it hears
 
     def take(self, up: CsaUp) -> None:
-        """A new datagram of the slave."""
+        """A new datagram of the slave; with another number of joints than joint_reach has it is not taken."""
+        count, wanted = len(up.position), len(self.config.gate.joint_reach)
+        self._other_joints = f"it has {count}, must be {wanted}" if count != wanted else ""
+        if self._other_joints:
+            if self.machine.state != "ENABLED" and self.hold is not HoldReason.JOINTS_DIFFER:
+                self._say(HoldReason.JOINTS_DIFFER, self._other_joints)
+            return
         before, self.up = self.up, up
         self._age_s = 0.0
-        if self.hold is HoldReason.WAITING:
+        if self.machine.state == "DISABLED":
             self.hold = HoldReason.DISABLED
-        anew = before is not None and (up.session != before.session or len(up.position) != len(before.position))
+        anew = before is not None and up.session != before.session
         if anew and self.machine.state == "ENABLED":
             self._pause(HoldReason.SLAVE_RESTARTED)
         self.machine.is_homed = bool(up.homed)
@@ -165,7 +176,7 @@ class RemoteSlave:
         missing = self._missing()
         if missing is not HoldReason.OK:
             more = f"{self._age_s * 1e3:.0f} ms" if missing is HoldReason.SLAVE_LOST else ""
-            self._pause(missing, more)
+            self._pause(missing, more or self._other_joints)
         elif self._engagement and not self._gate.check(now_ns):
             self._pause(HoldReason.SET_POINT_LOST, self._gate.reason)
         elif self._engagement and self.up is not None:
@@ -179,6 +190,9 @@ class RemoteSlave:
     def _pause(self, hold: HoldReason, more: str = "") -> None:
         self.machine.command("pause")
         self._disengage()
+        self._say(hold, more)
+
+    def _say(self, hold: HoldReason, more: str) -> None:
         self.hold = hold
         detail = f" ({more})" if more else ""
         self.events.append(("error", f"HOLD: {hold.name}: {hold.value}{detail} → {ADVICE[hold]}"))
