@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+
 import numpy as np
 import numpy.typing as npt
 
@@ -12,12 +14,21 @@ from saras.sim.console import DownMessage, UpMessage
 from saras.sim.exchange import EnergyBook, ExchangeMessage
 from saras.sim.experiment import Experiment
 from saras.sim.platform import servo_model
-from saras.teleop import EnergyTankState
+from saras.teleop import EnergyTankConfig, EnergyTankState
 
 Array = npt.NDArray[np.float64]
 
 SIDES = ("left", "right")
 TANKS = ("tank_master", "tank_slave")
+
+
+def _sees_the_handles(tank: EnergyTankConfig) -> EnergyTankConfig:
+    """Its conjugate is the handles' twist, as with the nodes: with a rate of zero it would let no wrench through."""
+    if np.any(tank.conjugate_rate):
+        return tank
+    tank = copy.copy(tank)
+    tank.conjugate_rate, tank.hold_s = np.repeat([20.0, 200.0], 3), 0.012  # config/tanks.yaml
+    return tank
 
 
 class PipelineSide:
@@ -76,7 +87,7 @@ class PipelinePlatform:
             left_mapping=experiment.mapping,
             right_mapping=experiment.mapping,
             transparency=experiment.transparency,
-            tank_master=experiment.master_tank,
+            tank_master=_sees_the_handles(experiment.master_tank),
             tank_slave=experiment.slave_tank,
             left_integrator=experiment.integrator,
             right_integrator=experiment.integrator,
