@@ -16,7 +16,7 @@ from saras import ConfigError
 from saras.csa import FixtureForce, FixtureForceConfig, FixtureForceOutput, FixtureWord, TeleopFixture
 from saras.csa.fixtures_file import FixturesFile, load
 from saras_ros1.channel import base_frame
-from saras_ros1.msg import SideFixtures
+from saras_ros1.msg import SideFault, SideFixtures
 from saras_ros1.node import Node
 from saras_ros1.stamped import time_of
 from saras_ros1.static_frames import StaticFrames
@@ -43,11 +43,12 @@ def read_file() -> FixturesFile | None:
 class Fixtures:
     """Those of some sides, each in its arm's base. Waits at the start for the frames, which must be static.
 
-    A frame that is unknown later, or elsewhere, makes its side's fixtures unknown until it is back.
+    A frame that is unknown later, or elsewhere, makes its side's fixtures unknown until it is back. guards: of the node
+    that moves the set-point; it has the supervisor hold a side with a wall that nobody knows where it is.
     /fixtures/enable (std_msgs/Bool) switches all off and on; they begin on.
     """
 
-    def __init__(self, node: Node, sides: tuple[str, ...]) -> None:
+    def __init__(self, node: Node, sides: tuple[str, ...], *, guards: bool = False) -> None:
         self.file = read_file()
         self.force = FixtureForceConfig() if self.file is None else self.file.force
         self.lists: dict[str, list[TeleopFixture]] = {side: [] for side in sides}
@@ -67,6 +68,8 @@ class Fixtures:
             self.lists[side] = self.file.build(side, lambda frame, side=side: self._places[side, frame])
             self.names[side] = [entry.name for entry in self.file.of(side)]
         self._switch = node.input("/fixtures/enable", Bool, lambda message: bool(message.data))
+        self._name = node.name.lstrip("/")
+        self._faults = node.output("/system/faults", SideFault) if guards else None
         node.every(CHECK_S, self.check)
 
     @property
@@ -93,6 +96,18 @@ class Fixtures:
             if reason and not self.reasons[side]:
                 rospy.logerr(f"fixtures of the {side} side: unknown from now on: {reason}")
         self.reasons = found
+        for side in found:
+            self._hold(side)
+
+    def _hold(self, side: str) -> None:
+        walls = any(not each.fixture.soft for each in self.lists[side])
+        if self._faults is None or not self.reasons[side] or not self.on or not walls:
+            return
+        reason = f"virtual walls are unknown: {self.reasons[side]}"
+        advice = "calibrate the frame again and start anew, or switch the fixtures off"
+        fault = SideFault(side=side, source=self._name, reason=reason, advice=advice)
+        fault.header.stamp = rospy.Time.now()
+        self._faults.publish(fault)
 
     def _wait(self, node: Node) -> None:
         state, node.state = node.state, "WAITING"

@@ -95,7 +95,7 @@ class RealtimeHost(Node):
 
     def _read_fixtures(self, pipeline) -> Fixtures:
         """The same file as the separate nodes read, into the pipeline."""
-        fixtures = Fixtures(self, SIDES)
+        fixtures = Fixtures(self, SIDES, guards=True)
         pipeline.fixture_force = fixtures.force
         for side in SIDES:
             setattr(pipeline, f"{side}_fixtures", fixtures.lists[side])

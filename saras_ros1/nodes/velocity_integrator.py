@@ -45,7 +45,7 @@ class VelocityIntegratorNode(Node):
         self.proximity = Proximity(self, (side,), collision_timeout_s, unknown_scale) if wanted else None
         self.set_point = self.output(f"/mesa_{side}/set_point", PoseStamped)
         self.tf = self.output("/tf", TFMessage)
-        self.fixtures = Fixtures(self, (side,))
+        self.fixtures = Fixtures(self, (side,), guards=True)
         self.walls = self.fixtures.lists[side]
         law = (FixtureIntegrator, config, self.walls) if self.walls else (VelocityIntegrator, config)
         self.integrator = self.law(f"velocity_integrator_{side}", *law)

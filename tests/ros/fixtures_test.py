@@ -140,7 +140,9 @@ class FixturesTest(unittest.TestCase):
         message = self.fixtures_say(lambda m: m.status == "STALE", "unknown")
         self.assertTrue(np.isnan(message.distance).all())
         self.assertIn("world", message.reason)
-        rospy.sleep(1.0)  # the integrator is another process
+        wait_until(lambda: self.state["left"].message.state == ChannelState.HOLD, lambda: self.state["left"].message)
+        self.assertIn("virtual walls are unknown", self.state["left"].message.reason)
+        self.assertEqual(self.state["right"].message.state, ChannelState.ENGAGED)
         before = self.away("left")
         self.go(np.array([-0.02, 0.0, 0.0]))
         np.testing.assert_allclose(self.away("left"), before, atol=1e-9)

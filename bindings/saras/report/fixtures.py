@@ -43,5 +43,5 @@ def _rows(side: str, topic: Topic) -> list[list[str | None]]:
             rows.append([side, name, None, None, due, unknown])
             continue
         i = int(np.nanargmin(column))
-        rows.append([side, name, f"{1e3 * column[i]:.3f}", f"{topic.t[i]:.1f}", due, unknown])
+        rows.append([side, name, f"{round(1e3 * column[i], 3) + 0.0:.3f}", f"{topic.t[i]:.1f}", due, unknown])
     return rows
