@@ -190,6 +190,7 @@ void bind_csa(py::module_& m) {
   bind_master(m);
   bind_csa_fixtures(m);
   bind_csa_teleop_fixtures(m);
+  bind_csa_border(m);
   bind_csa_slave(m);
   bind_csa_teleop(m);
 }

@@ -37,6 +37,7 @@ Struct<T>& joint_field(Struct<T>& bound, const char* name, csa::JointVector T::*
 }
 
 void bind_csa(py::module_& m);
+void bind_csa_border(py::module_& m);
 void bind_csa_fixtures(py::module_& m);
 void bind_csa_slave(py::module_& m);
 void bind_csa_teleop(py::module_& m);

@@ -82,7 +82,8 @@ void bind_csa_teleop(py::module_& m) {
           "step",
           [](CsaTeleop& self, const Pose& master_pose, const Pose& slave_pose, const Pose& proxy_pose, Seconds dt,
              const std::optional<double>& slave_force_N, const std::optional<double>& proxy_depth_m,
-             const Vector3& proxy_normal, const Wrench& compliance_wrench, bool clutch, bool enabled, bool stale) {
+             const Vector3& proxy_normal, const Wrench& compliance_wrench, bool clutch, bool enabled, bool stale,
+             const Wrench& fixture_wrench) {
             CsaTeleopInput input;
             input.master_pose = master_pose;
             input.slave_pose = slave_pose;
@@ -93,6 +94,7 @@ void bind_csa_teleop(py::module_& m) {
             input.proxy_depth_m = proxy_depth_m.value_or(0.0);
             input.proxy_normal = proxy_normal;
             input.compliance_wrench = compliance_wrench;
+            input.fixture_wrench = fixture_wrench;
             input.clutch = clutch;
             input.enabled = enabled;
             input.stale = stale;
@@ -100,10 +102,11 @@ void bind_csa_teleop(py::module_& m) {
           },
           py::arg("master_pose"), py::arg("slave_pose"), py::arg("proxy_pose"), py::arg("dt"), py::arg("slave_force_N"),
           py::arg("proxy_depth_m"), py::arg("proxy_normal"), py::arg("compliance_wrench"), py::arg("clutch") = false,
-          py::arg("enabled") = true, py::arg("stale") = false,
+          py::arg("enabled") = true, py::arg("stale") = false, py::arg("fixture_wrench") = Wrench{},
           "One tick, the slave's base axes. Poses: (4, 4) of handle, slave's set-point, proxy. slave_force_N: norm of\n"
           "the filtered contact force, None: unknown. proxy_depth_m: in the model, negative outside, None: no model.\n"
-          "proxy_normal: (3,) outward. compliance_wrench: (6,) from the proxy's interaction.")
+          "proxy_normal: (3,) outward. compliance_wrench: (6,) from the proxy's interaction.\n"
+          "fixture_wrench: (6,) of BorderWrench, felt in every state.")
       .def("reset", &CsaTeleop::reset, py::arg("state") = CsaTeleopState{})
       .def_property_readonly("config", [](const CsaTeleop& self) { return self.config(); })
       .def_property_readonly("state", [](const CsaTeleop& self) { return self.state(); });

@@ -1,8 +1,8 @@
 """csa_slave: the slave's arm under hybrid control of force and motion, inside virtual fixtures.
 
 Steps on the arm's joints; takes /csa/teleop/state, the force, /csa/modeler/roi and /csa/slave/stiffness; gives the arm
-servo_jp, and under /csa/slave what is measured (one stamp: measured_cp, measured_cv, measured_cf), the set-point and
-what the controller did (admittance). What it does not know is a hold with its reason.
+servo_jp, and under /csa/slave what is measured (one stamp: measured_cp, measured_cv, measured_cf), the set-point,
+what the controller did (admittance) and the region that is in force. What it does not know is a hold with its reason.
 """
 
 from __future__ import annotations
@@ -76,6 +76,8 @@ class CsaSlave(CsaNode):
         }
         self.q: np.ndarray | None = None
         self.enabled, self.reason, self.region = False, "WAITING", "none"
+        self.region_out = self.output("/csa/slave/region", PolygonStamped, latch=True)
+        self.region_out.publish(PolygonStamped())
         rospy.Subscriber("/csa/modeler/roi", PolygonStamped, self._on_region, queue_size=5)
         Gains("/csa/slave/set_gains", GAINS, self._take_gains)
         self.loop(self.step, [self.joints], period_s=setup.period_s)
@@ -114,6 +116,7 @@ class CsaSlave(CsaNode):
             return
         with self.lock:
             self.fixtures, self.region = fixtures, f"{len(points)} points" if len(points) else "none"
+        self.region_out.publish(message)
 
     def step(self, tick: Tick) -> None:
         """One set-point; nothing is said while the arm is silent, so that everybody knows."""

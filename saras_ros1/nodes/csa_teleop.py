@@ -1,7 +1,8 @@
 """csa_teleop: contact states, references, wrench on the hand; the region of interest and the primitive.
 
 Steps on /csa/master/measured_cp; gives /csa/teleop/state (what slave and proxy obey), mismatch and primitive,
-/csa/master/compliance (from the model, as it is) and /csa/master/servo_cf (ramped, by contact state).
+/csa/master/compliance (from the model, as it is), border (from the fixtures that the slave obeys) and servo_cf (both,
+ramped, by contact state).
 """
 
 from __future__ import annotations
@@ -54,6 +55,7 @@ class CsaTeleop(CsaNode):
         self.arms = [self._arm_state(arm) for arm in (setup.master, setup.slave)]
         self.law = csa.CsaTeleop(setup.teleop_config())
         self.compliance = csa.ComplianceWrench(setup.compliance_config())
+        self.fixtures, self.border = csa.FixtureSet(setup.fixtures()), csa.BorderWrench(setup.border_config())
         self.exploring = Exploring(setup.teleop.get("exploring_speed_m_s", 0.01))
         start = setup.palpation()
         self.primitive = CsaPrimitive(KINDS[start.kind], start.amplitude, start.frequency_hz, False)
@@ -65,12 +67,14 @@ class CsaTeleop(CsaNode):
         self.mismatch_out = self.output("/csa/teleop/mismatch", Vector3Stamped)
         self.primitive_out = self.output("/csa/teleop/primitive", CsaPrimitive, latch=True)
         self.compliance_out = self.output("/csa/master/compliance", WrenchStamped)
+        self.border_out = self.output("/csa/master/border", WrenchStamped)
         self.wrench_out = self.output("/csa/master/servo_cf", WrenchStamped)
         self.region_out = self.output("/csa/modeler/roi", PolygonStamped, latch=True)
         self.picked_out = self.output("/csa/teleop/picked", PolygonStamped, latch=True)
         self.primitive_out.publish(self.primitive)
         self._pedals(setup.teleop.get("pedals", {}))
         self._services()
+        rospy.Subscriber("/csa/slave/region", PolygonStamped, self._on_region, queue_size=5)
         self.loop(self.step, [self.hand], period_s=setup.period_s)
 
     def _pedals(self, topics: dict) -> None:
@@ -97,7 +101,9 @@ class CsaTeleop(CsaNode):
         enabled, missing = self._not_enabled() == "", self._missing(tick)
         proxy = self.proxy.value if self.proxy.fresh else None
         depth, normal = self.contact.value if self.contact.fresh else (math.nan, np.zeros(3))
-        compliance = self._compliance(proxy, depth, normal, dt)
+        velocity = self._velocity(proxy, dt)
+        compliance = self._compliance(proxy, velocity, depth, normal, dt)
+        border = self._border(proxy, velocity, dt)
         wrench = self.force.fresh_value
         out = self.law.step(
             self.hand.value if self.hand.fresh else np.eye(4),
@@ -111,10 +117,11 @@ class CsaTeleop(CsaNode):
             clutch=self.clutch is not None and self.clutch.state == PRESSED,
             enabled=enabled,
             stale=bool(missing),
+            fixture_wrench=border,
         )
         self._synchronisations += int(out.synchronise)
         self.reason = (self._not_enabled() or missing or out.status.name) if out.hold else ""
-        self._publish(tick, out, compliance, normal, enabled, dt)
+        self._publish(tick, out, compliance, border, normal, enabled, dt)
 
     def _not_enabled(self) -> str:
         """Why teleoperation is off; empty: it is on."""
@@ -148,21 +155,48 @@ class CsaTeleop(CsaNode):
         silent = self.hand if tick.stale else silent
         return f"STALE: nothing from {silent.topic}" if silent is not None else ""
 
-    def _compliance(self, proxy: np.ndarray | None, depth: float, normal: np.ndarray, dt: float) -> np.ndarray:
-        """(6,) of the wall at the model's surface; zero where there is none."""
+    def _velocity(self, proxy: np.ndarray | None, dt: float) -> np.ndarray:
+        """(3,) of the proxy's tip."""
         last, self._last_proxy = self._last_proxy, proxy
+        return np.zeros(3) if proxy is None or last is None else (proxy[:3, 3] - last[:3, 3]) / dt
+
+    def _compliance(
+        self, proxy: np.ndarray | None, velocity: np.ndarray, depth: float, normal: np.ndarray, dt: float
+    ) -> np.ndarray:
+        """(6,) of the wall at the model's surface; zero where there is none."""
         if proxy is None or not math.isfinite(depth) or np.linalg.norm(normal) < 0.5:
             return np.zeros(6)
-        twist = np.zeros(6)
-        if last is not None:
-            twist[:3] = (proxy[:3, 3] - last[:3, 3]) / dt
         frame = np.eye(4)
         frame[:3, :3] = axes_with_z(normal)
         frame[:3, 3] = proxy[:3, 3] + depth * normal
-        return np.array(self.compliance.step(proxy, twist, frame, dt).wrench)
+        return np.array(self.compliance.step(proxy, np.r_[velocity, 0.0, 0.0, 0.0], frame, dt).wrench)
+
+    def _border(self, proxy: np.ndarray | None, velocity: np.ndarray, dt: float) -> np.ndarray:
+        """(6,) back to where the fixtures let the slave's tip go; zero while the proxy is there."""
+        if proxy is None:
+            return np.zeros(6)
+        return np.array(self.border.step(self.fixtures.step(proxy, dt), velocity, dt).wrench)
+
+    def _on_region(self, message: PolygonStamped) -> None:
+        """The region that the slave obeys; no points: none."""
+        points = np.array([(p.x, p.y, p.z) for p in message.polygon.points], dtype=float)
+        try:
+            fixtures = csa.FixtureSet(self.setup.fixtures(points if len(points) else None))
+        except ConfigError as error:
+            rospy.logerr(f"{self.name}: region refused: {error}")
+            return
+        with self.lock:
+            self.fixtures = fixtures
 
     def _publish(
-        self, tick: Tick, out: csa.CsaTeleopOutput, compliance: np.ndarray, normal: np.ndarray, enabled: bool, dt: float
+        self,
+        tick: Tick,
+        out: csa.CsaTeleopOutput,
+        compliance: np.ndarray,
+        border: np.ndarray,
+        normal: np.ndarray,
+        enabled: bool,
+        dt: float,
     ) -> None:
         desired = np.array(out.desired)
         if not out.hold:
@@ -185,6 +219,7 @@ class CsaTeleop(CsaNode):
         stamp_ns = tick.stamp_ns
         self.wrench_out.publish(convert.wrench_msg(out.wrench, self.frame, stamp_ns))
         self.compliance_out.publish(convert.wrench_msg(compliance, self.frame, stamp_ns))
+        self.border_out.publish(convert.wrench_msg(border, self.frame, stamp_ns))
         if known:
             mismatch = Vector3Stamped(header=message.header)
             vector(mismatch.vector, self.tip.value[:3, 3] - self.proxy.value[:3, 3])
@@ -225,12 +260,13 @@ class CsaTeleop(CsaNode):
         teleop = csa.CsaTeleop(self.setup.teleop_config(**{k: v for k, v in gains.items() if k in TELEOP_GAINS}))
         walls = {k: v for k, v in gains.items() if k in ("stiffness_N_m", "damping_N_s_m")}
         compliance = csa.ComplianceWrench(self.setup.compliance_config(**walls))
+        border = csa.BorderWrench(self.setup.border_config(**walls))
         with self.lock:
             state = self.law.state
             if teleop.config.scale != self.law.config.scale:
                 state.has_reference = False  # the old reference with the new scale would be a step
             teleop.reset(state)
-            self.law, self.compliance = teleop, compliance
+            self.law, self.compliance, self.border = teleop, compliance, border
 
     def _on_pick(self) -> tuple[bool, str]:
         with self.lock:

@@ -154,7 +154,7 @@ class Csa(unittest.TestCase):
         self.force_settles(2.0)
 
     def test_a5_a_picked_region_holds_the_tip_inside(self) -> None:
-        region = Newest("/csa/modeler/roi", PolygonStamped)
+        region, border = Newest("/csa/modeler/roi", PolygonStamped), Newest("/csa/master/border", WrenchStamped)
         size = 0.006
         for x, y in ((-size, -size), (size, -size), (size, size), (-size, size), (-size, -size)):
             self.surgeon.go(DOWN + np.array([x, y, 0.0]), 1.5)
@@ -168,9 +168,19 @@ class Csa(unittest.TestCase):
         tips = np.array([convert.pose(m)[:2, 3] for m in self.tip.all]) - self.setup.start()[:2]
         self.assertLess(np.abs(tips).max(), size + 0.0015)  # corners were picked to a millimetre
         self.assertGreater(np.abs(tips).max(), size - 0.0015)
-        self.surgeon.go(DOWN + 0.014 * SIDE, 2.0)
-        wait_until(lambda: self.position(self.proxy)[0] > size + 0.004, "the proxy goes on")
+        self.surgeon.go(DOWN + 0.02 * SIDE, 2.0)
+        wait_until(
+            lambda: self.position(self.proxy)[0] > size + 0.003,
+            lambda: f"the proxy goes on: {self.position(self.proxy)}, {convert.wrench(self.hand.message)}",
+        )
+        wait_until(
+            lambda: convert.wrench(self.hand.message)[0] < -0.5, lambda: f"felt: {convert.wrench(self.hand.message)}"
+        )
+        self.hand.clear()
         self.surgeon.go(DOWN, 2.0)
+        wait_until(lambda: not convert.wrench(border.next()).any(), "nothing of it inside")
+        wrenches = np.array([convert.wrench(m)[:3] for m in self.hand.all])
+        self.assertLess(wrenches[:, 0].max(), 0.3)  # it never pulls outwards: what is left is the model's
         self.surgeon.press("pick", 2)
         wait_until(lambda: not region.message.polygon.points, "no region")
         wait_until(lambda: self.did.message.fixture == "", "no fixture")

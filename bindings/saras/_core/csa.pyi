@@ -12,6 +12,10 @@ import saras._core.teleop
 import typing
 
 __all__: list[str] = [
+    "BorderWrench",
+    "BorderWrenchConfig",
+    "BorderWrenchOutput",
+    "BorderWrenchState",
     "ComplianceConfig",
     "ComplianceConvention",
     "ComplianceGains",
@@ -1159,6 +1163,130 @@ class FixtureIntegrator:
     def config(self) -> saras._core.teleop.VelocityIntegratorConfig: ...
     @property
     def state(self) -> FixtureIntegratorState: ...
+
+class BorderWrenchConfig:
+    """
+    Gains of BorderWrench. Raises ConfigError.
+    """
+
+    _fields: typing.ClassVar[list] = ["stiffness_N_m", "damping_N_s_m", "force_limit_N", "dt_max_s"]
+    def __copy__(self) -> BorderWrenchConfig: ...
+    def __deepcopy__(self, arg0: dict) -> BorderWrenchConfig: ...
+    def __init__(self, **kwargs) -> None:
+        """
+        Gains of BorderWrench. Raises ConfigError.
+        """
+    def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
+    @property
+    def damping_N_s_m(self) -> float:
+        """
+        [N s/m]
+        """
+    @damping_N_s_m.setter
+    def damping_N_s_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def dt_max_s(self) -> float:
+        """
+        longest time step [s]
+        """
+    @dt_max_s.setter
+    def dt_max_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def force_limit_N(self) -> float:
+        """
+        [N]
+        """
+    @force_limit_N.setter
+    def force_limit_N(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def stiffness_N_m(self) -> float:
+        """
+        [N/m]
+        """
+    @stiffness_N_m.setter
+    def stiffness_N_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class BorderWrenchOutput:
+    """
+    Result of BorderWrench.step.
+    """
+
+    _fields: typing.ClassVar[list] = ["wrench", "way", "status"]
+    def __copy__(self) -> BorderWrenchOutput: ...
+    def __deepcopy__(self, arg0: dict) -> BorderWrenchOutput: ...
+    def __init__(self, **kwargs) -> None:
+        """
+        Result of BorderWrench.step.
+        """
+    def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
+    @property
+    def status(self) -> saras._core.Status:
+        """
+        LIMITED: cut at the limit, or fixtures that contradict each other
+        """
+    @status.setter
+    def status(self, arg1: saras._core.Status) -> None: ...
+    @property
+    def way(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) shortest back to where all fixtures are obeyed; zero inside [m]
+        """
+    @way.setter
+    def way(self, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+    @property
+    def wrench(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (6,) on the hand, base axes
+        """
+    @wrench.setter
+    def wrench(self, arg1: numpy.typing.ArrayLike) -> None: ...
+
+class BorderWrenchState:
+    """
+    Nothing is remembered.
+    """
+
+    _fields: typing.ClassVar[list] = list()
+    def __copy__(self) -> BorderWrenchState: ...
+    def __deepcopy__(self, arg0: dict) -> BorderWrenchState: ...
+    def __init__(self, **kwargs) -> None:
+        """
+        Nothing is remembered.
+        """
+    def __repr__(self) -> str: ...
+    def _numbers(self) -> list[float]:
+        """
+        All numbers in field order, as saras.law_trace records them.
+        """
+
+class BorderWrench:
+    """
+    What the hand feels of virtual fixtures: a one-sided spring back to where the tip may be.
+    """
+    def __init__(self, config: BorderWrenchConfig = ...) -> None: ...
+    def reset(self, state: BorderWrenchState = ...) -> None: ...
+    def step(
+        self,
+        fixtures: FixtureOutput | None,
+        velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+        dt: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> BorderWrenchOutput:
+        """
+        fixtures: FixtureOutput at the point that the hand leads, None: none; velocity: (3,) of that point, base
+        axes. Rows of remote centres are left out.
+        """
+    @property
+    def config(self) -> BorderWrenchConfig: ...
+    @property
+    def state(self) -> BorderWrenchState: ...
 
 class MotionReason:
     """
@@ -2399,11 +2527,13 @@ class CsaTeleop:
         clutch: bool = False,
         enabled: bool = True,
         stale: bool = False,
+        fixture_wrench: numpy.typing.ArrayLike = ...,
     ) -> CsaTeleopOutput:
         """
         One tick, the slave's base axes. Poses: (4, 4) of handle, slave's set-point, proxy. slave_force_N: norm of
         the filtered contact force, None: unknown. proxy_depth_m: in the model, negative outside, None: no model.
         proxy_normal: (3,) outward. compliance_wrench: (6,) from the proxy's interaction.
+        fixture_wrench: (6,) of BorderWrench, felt in every state.
         """
     @property
     def config(self) -> CsaTeleopConfig: ...

@@ -6,6 +6,10 @@ Robots", 2018. Linear parts first, SI units; a tissue wrench is what the tip exe
 
 from saras._core.csa import (
     MAX_JOINTS,
+    BorderWrench,
+    BorderWrenchConfig,
+    BorderWrenchOutput,
+    BorderWrenchState,
     ComplianceConfig,
     ComplianceConvention,
     ComplianceGains,
@@ -61,6 +65,10 @@ from saras.csa.hulls import convex_hull, region_of_interest
 
 __all__ = [
     "MAX_JOINTS",
+    "BorderWrench",
+    "BorderWrenchConfig",
+    "BorderWrenchOutput",
+    "BorderWrenchState",
     "ComplianceConfig",
     "ComplianceConvention",
     "ComplianceGains",

@@ -107,6 +107,15 @@ class Setup:
         wall = csa.ComplianceGains(stiffness_N_m=[0.0, 0.0, stiffness], damping_N_s_m=[0.0, 0.0, damping])
         return csa.ComplianceConfig(negative=wall)
 
+    def border_config(self, **changes: float) -> csa.BorderWrenchConfig:
+        """Fixtures are felt as hard as the model. changes: stiffness_N_m, damping_N_s_m. Raises ConfigError."""
+        config = self.teleop_config()
+        stiffness = changes.get("stiffness_N_m", config.stiffness_N_m)
+        damping = changes.get("damping_N_s_m", self.teleop.get("damping_N_s_m", 1.0))
+        return csa.BorderWrenchConfig(
+            stiffness_N_m=stiffness, damping_N_s_m=damping, force_limit_N=config.force_limit_N
+        )
+
     def palpation(self) -> csa.Palpation:
         """What is superimposed at the start."""
         given = self.teleop.get("palpation", {"kind": "none"})

@@ -154,10 +154,12 @@ def simulate(experiment: CsaExperiment | None = None) -> CsaResult:
     proxy = csa.ProxySlave(config.motion)
     wall = csa.ComplianceGains(stiffness_N_m=[0.0, 0.0, e.teleop.stiffness_N_m], damping_N_s_m=[0.0, 0.0, 1.0])
     compliance = csa.ComplianceWrench(csa.ComplianceConfig(negative=wall))
-    fixtures = None
+    border = csa.BorderWrench(csa.BorderWrenchConfig(stiffness_N_m=e.teleop.stiffness_N_m))
+    fixtures = felt_fixtures = None
     if e.region_m is not None:
         corners = [start + e.region_m * np.array([x, y, 0.0]) for x in (-1, 1) for y in (-1, 1)]
-        fixtures = csa.FixtureSet([csa.Fixture.hull("region", csa.region_of_interest(corners, UP))])
+        region = csa.Fixture.hull("region", csa.region_of_interest(corners, UP))
+        fixtures, felt_fixtures = csa.FixtureSet([region]), csa.FixtureSet([region])
     hand = sim.Operator(e.hand)
     handle, hand_force = np.eye(4), np.zeros(3)
     last_tip, last_proxy = start.copy(), start.copy()
@@ -172,6 +174,7 @@ def simulate(experiment: CsaExperiment | None = None) -> CsaResult:
         frame[:3, 3] = [proxy_pose[0, 3], proxy_pose[1, 3], model_height]
         velocity = np.r_[(proxy_pose[:3, 3] - last_proxy) / e.dt_s, 0.0, 0.0, 0.0]
         wrench = compliance.step(proxy_pose, velocity, frame, e.dt_s).wrench
+        proxy_found = felt_fixtures.step(proxy_pose, e.dt_s) if felt_fixtures else None
         told = teleop.step(
             handle,
             pose,
@@ -181,6 +184,7 @@ def simulate(experiment: CsaExperiment | None = None) -> CsaResult:
             model_height - proxy_pose[2, 3],
             UP,
             wrench,
+            fixture_wrench=border.step(proxy_found, velocity[:3], e.dt_s).wrench,
         )
         last_tip, last_proxy = tip, proxy_pose[:3, 3].copy()
         if told.synchronise:

@@ -109,7 +109,7 @@ CsaTeleopOutput CsaTeleop::step(const CsaTeleopInput& input, Seconds dt) noexcep
   }
   const bool known = input.force_known && std::isfinite(input.slave_force_N) && input.model_known &&
                      std::isfinite(input.proxy_depth_m) && input.proxy_normal.allFinite() &&
-                     is_finite(input.compliance_wrench);
+                     is_finite(input.compliance_wrench) && is_finite(input.fixture_wrench);
   if (input.stale || !known) {
     return hold(Status::kStale);
   }
@@ -141,7 +141,15 @@ CsaTeleopOutput CsaTeleop::step(const CsaTeleopInput& input, Seconds dt) noexcep
   } else if (transition.state == ContactState::kFullContact) {
     output.desired_force_N = config_.desired_force_N;
   }
-  ramp_wrench(transition.master_feels && !input.clutch ? input.compliance_wrench : Wrench{}, dt);
+  Wrench felt;
+  if (!input.clutch) {
+    felt = input.fixture_wrench;
+    if (transition.master_feels) {
+      felt.force += input.compliance_wrench.force;
+      felt.torque += input.compliance_wrench.torque;
+    }
+  }
+  ramp_wrench(felt, dt);
   output.wrench = state_.wrench;
   output.status = Status::kOk;
   return output;

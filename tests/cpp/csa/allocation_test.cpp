@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "csa/fixture_rig.hpp"
+#include "saras/csa/border_wrench.hpp"
 #include "saras/csa/compliance.hpp"
 #include "saras/csa/fixture_force.hpp"
 #include "saras/csa/fixture_integrator.hpp"
@@ -81,6 +82,16 @@ TEST(CsaAllocation, FixtureIntegrator) {
   test::expect_no_allocation(FixtureIntegrator(config, teleop_fixtures()), in,
                              {&in.motion.measured_pose.translation.x(), &in.motion.twist.linear.z()});
 }
+TEST(CsaAllocation, BorderWrench) {
+  FixtureSet fixtures({{"plane", PlaneFixture{}, false},
+                       {"line", LineFixture{Vector3::Zero(), Vector3::UnitX(), 0.001}, false},
+                       {"trocar", RemoteCentreFixture{}, false}});
+  const FixtureOutput found =
+      fixtures.step({{Quaternion::Identity(), Vector3(0.0, 0.01, -0.01)}, Vector3::UnitZ(), Pose{}}, 0.001);
+  BorderWrenchInput in;
+  in.rows = &found.rows;
+  test::expect_no_allocation(BorderWrench({}), in, {&in.velocity.x(), &in.velocity.z()});
+}
 TEST(CsaAllocation, SlaveMlc) {
   const dvrk::Psm psm;
   FixtureSet fixtures = all_kinds();
@@ -105,7 +116,8 @@ TEST(CsaAllocation, CsaTeleop) {
   CsaTeleopInput in;
   in.enabled = in.force_known = in.model_known = true;
   test::expect_no_allocation(CsaTeleop({}), in,
-                             {&in.master_pose.translation.x(), &in.slave_force_N, &in.compliance_wrench.force.y()});
+                             {&in.master_pose.translation.x(), &in.slave_force_N, &in.compliance_wrench.force.y(),
+                              &in.fixture_wrench.force.x()});
 }
 TEST(CsaAllocation, MasterMlc) {
   const std::vector<Joint> joints = {

@@ -68,6 +68,7 @@ struct CsaTeleopInput {
   Vector3 proxy_normal = Vector3::Zero();  ///< unit, from that tip to the surface: outward
   bool model_known = false;
   Wrench compliance_wrench;  ///< from the proxy's interaction with the model
+  Wrench fixture_wrench;     ///< from fixtures that the proxy is beyond; felt in every state
   bool clutch = false;       ///< pressed: the master moves alone
   bool enabled = false;      ///< operator present, arms enabled
   bool stale = false;        ///< a pose is older than its limit
