@@ -9,11 +9,11 @@ from __future__ import annotations
 import numpy as np
 import rospy
 from geometry_msgs.msg import PoseStamped, TwistStamped, WrenchStamped
-from std_msgs.msg import Float64
 
 from saras import ConfigError, sim
 from saras_ros1 import convert
 from saras_ros1.csa_node import CsaNode
+from saras_ros1.msg import CsaStiffness
 from saras_ros1.node import Tick, run
 
 
@@ -34,7 +34,7 @@ class CsaPhantom(CsaNode):
         self.twist = self.input(f"/{self.slave}/measured_cv", TwistStamped, twist, timeout_s=setup.timeout_s)
         self.force_out = self.output(force.get("topic", f"/{self.slave}/measured_cf"), WrenchStamped)
         known = setup.phantom().get("stiffness_known", True)
-        self.stiffness_out = self.output("/csa/slave/stiffness", Float64) if known else None
+        self.stiffness_out = self.output("/csa/slave/stiffness", CsaStiffness) if known else None
         self.force_N = 0.0
         self.loop(self.step, [self.pose], period_s=setup.period_s)
 
@@ -48,7 +48,9 @@ class CsaPhantom(CsaNode):
         self.force_N = float(np.linalg.norm(felt.wrench[:3]))
         self.force_out.publish(convert.wrench_msg(np.array(felt.measured_wrench), self.frame, tick.stamp_ns))
         if self.stiffness_out is not None:
-            self.stiffness_out.publish(Float64(felt.stiffness))
+            message = CsaStiffness(stiffness_N_m=felt.stiffness, std_N_m=0.0)
+            message.header.stamp, message.header.frame_id = tick.stamp, self.frame
+            self.stiffness_out.publish(message)
 
     def report(self) -> dict:
         """What the sensor reads."""

@@ -14,20 +14,21 @@ import numpy as np
 import rospy
 from geometry_msgs.msg import PolygonStamped, PoseStamped, TwistStamped, WrenchStamped
 from sensor_msgs.msg import JointState
-from std_msgs.msg import Float64, String
+from std_msgs.msg import String
 
 from saras import ConfigError, csa
 from saras.csa import arms
 from saras_ros1 import convert
 from saras_ros1.csa_gains import Gains
 from saras_ros1.csa_node import CsaNode, Need, joint_reader, joint_state, vector, warm_up
-from saras_ros1.msg import CsaAdmittance, CsaTeleopState
+from saras_ros1.msg import CsaAdmittance, CsaStiffness, CsaTeleopState
 from saras_ros1.node import StartupError, Tick, run
 from saras_ros1.nodes.csa_proxy import read_told
+from saras_ros1.stiffness_under_tip import upper_bound
 
 GAINS = ("admittance_m_Ns", "stiffness_max_N_m", "approach_speed_m_s", "speed_limit_m_s", "force_cap_N")
 MEASURE_S = 0.5  # for so long the arm's rate is looked at
-STIFFNESS_TIMEOUT_S = 1.0
+STIFFNESS_TIMEOUT_S = 0.3  # at 10 mm/s the tip is 3 mm further: what the estimate is made for
 SLOWER = 1.1  # an arm whose period is longer than so many of the file's counts as slower than the file says
 
 
@@ -54,7 +55,7 @@ class CsaSlave(CsaNode):
         self.joints = self.input(joints, JointState, read, timeout_s=setup.timeout_s)
         self.force = self.input(topic, WrenchStamped, convert.wrench, timeout_s=setup.timeout_s)
         self.told = self.input("/csa/teleop/state", CsaTeleopState, read_told, timeout_s=setup.timeout_s)
-        self.stiffness = self.input("/csa/slave/stiffness", Float64, read_stiffness, timeout_s=STIFFNESS_TIMEOUT_S)
+        self.stiffness = self.input("/csa/slave/stiffness", CsaStiffness, read_stiffness, timeout_s=STIFFNESS_TIMEOUT_S)
         measured_s = self._measured_period()
         self.period_s = measured_s if measured_s > SLOWER * setup.period_s else setup.period_s
         self.law = csa.SlaveMlc(setup.slave_config(self.period_s))
@@ -228,11 +229,11 @@ def palpation(kind: str, amplitude: float, frequency_hz: float) -> csa.Palpation
     return csa.Palpation(kind=found, amplitude=amplitude, frequency_hz=frequency_hz)
 
 
-def read_stiffness(message: Float64) -> float:
-    """[N/m], positive. Raises ValueError."""
-    if not (math.isfinite(message.data) and message.data > 0.0):
-        raise ValueError(f"stiffness {message.data}: must be positive")
-    return float(message.data)
+def read_stiffness(message: CsaStiffness) -> float:
+    """Upper bound [N/m] that the gain must be stable for; NaN: not known."""
+    bound = float(upper_bound(message.stiffness_N_m, message.std_N_m))
+    known = math.isfinite(bound) and message.stiffness_N_m > 0.0 and message.std_N_m >= 0.0
+    return bound if known else math.nan
 
 
 def main() -> int:

@@ -6,19 +6,19 @@ import numpy as np
 import pytest
 
 pytest.importorskip("rospy")
-from saras_ros1.msg import CsaAdmittance, CsaTeleopState
+from saras_ros1.msg import CsaAdmittance, CsaStiffness, CsaTeleopState
 from scipy.spatial.transform import Rotation
 from sensor_msgs.msg import JointState
-from std_msgs.msg import Float64
 from visualization_msgs.msg import Marker
 
-from saras import ConfigError
+from saras import ConfigError, csa
 from saras_ros1 import csa_markers as markers
 from saras_ros1.csa_exploring import Exploring
 from saras_ros1.csa_node import DT_MAX_S, Pace, joint_reader
 from saras_ros1.inputs import Tick
 from saras_ros1.nodes.csa_slave import in_base, palpation, read_stiffness
 from saras_ros1.nodes.csa_teleop import axes_with_z
+from saras_ros1.stiffness_under_tip import StiffnessUnderTip
 
 MS = 1_000_000
 
@@ -79,9 +79,59 @@ def test_wrenches_of_the_tip_and_frames_of_the_model() -> None:
 def test_what_is_not_known_is_refused() -> None:
     with pytest.raises(ConfigError, match="kind = 'rub'"):
         palpation("rub", 0.0, 1.0)
-    for bad in (0.0, -1.0, np.nan):
-        with pytest.raises(ValueError, match="positive"):
-            read_stiffness(Float64(bad))
+
+
+def slave_law() -> csa.SlaveMlc:
+    motion = csa.ConstrainedMotionConfig(
+        lower=np.full(6, -1.0), upper=np.ones(6), speed=np.ones(6), lead=np.full(6, 0.1)
+    )
+    return csa.SlaveMlc(csa.SlaveMlcConfig(motion=motion, period_s=0.01, admittance_m_Ns=0.05))
+
+
+def test_an_estimate_raises_the_gain_only_as_far_as_two_deviations_allow() -> None:
+    rng, law = np.random.default_rng(3), slave_law()
+    least = law.admittance(np.nan)
+    assert law.admittance(300.0) > least == law.admittance(law.config.stiffness_max_N_m)
+    for _ in range(2000):
+        stiffness, std = rng.uniform(20.0, 3000.0), rng.uniform(0.0, 1000.0)
+        gain = law.admittance(read_stiffness(CsaStiffness(stiffness_N_m=stiffness, std_N_m=std)))
+        assert least <= gain <= law.admittance(stiffness + 2.0 * std) + 1e-12
+    for bad in ((0.0, 0.0), (-1.0, 0.0), (np.nan, 1.0), (np.inf, 1.0), (300.0, np.nan), (300.0, np.inf), (300.0, -1.0)):
+        bound = read_stiffness(CsaStiffness(stiffness_N_m=bad[0], std_N_m=bad[1]))
+        assert np.isnan(bound) and law.admittance(bound) == least
+
+
+def test_what_is_under_the_tip_is_known_only_where_all_around_it_is() -> None:
+    rng, law = np.random.default_rng(4), slave_law()
+    side = np.linspace(-0.02, 0.02, 41)
+    vertices = np.array([(x, y, 0.0) for x in side for y in side])
+    for _ in range(300):
+        stiffness, std = rng.uniform(200.0, 1500.0, len(vertices)), rng.uniform(1.0, 300.0, len(vertices))
+        hole = np.linalg.norm(vertices[:, :2] - rng.uniform(-0.02, 0.02, 2), axis=1) < rng.uniform(0.0, 0.01)
+        stiffness[hole], std[hole] = np.nan, np.inf
+        under = StiffnessUnderTip(reach_m=0.003, depth_m=0.01)
+        assert np.isnan(under.at(np.zeros(3))[0])
+        under.take_map(vertices, stiffness, std)
+        tip = np.r_[rng.uniform(-0.025, 0.025, 2), -rng.uniform(0.0, 0.012)]
+        across = np.linalg.norm(vertices[:, :2] - tip[:2], axis=1)
+        found = under.at(tip)
+        gain = law.admittance(read_stiffness(CsaStiffness(stiffness_N_m=found[0], std_N_m=found[1])))
+        if np.isfinite(found[0]):
+            assert across.min() <= 0.003 + 1e-12
+            near = across**2 <= across.min() ** 2 + 0.003**2
+            assert not hole[near].any()
+            # Never more than the stiffest of what is near would allow.
+            assert gain <= law.admittance((stiffness + 2.0 * std)[near].max()) + 1e-12
+        else:
+            assert gain == law.admittance(np.nan)
+            assert hole[across <= 0.0045].any() or across.min() > 0.002 or tip[2] < -0.0099
+    under.take_touched(np.arange(len(vertices)), np.full(len(vertices), 400.0), np.full(len(vertices), 10.0))
+    assert under.at(np.array([0.0, 0.0, -0.003])) == (400.0, 10.0)
+    under.take_touched(np.array([len(vertices)]), np.array([1.0]), np.array([1.0]))  # of another mesh
+    assert under.at(np.array([0.0, 0.0, -0.003])) == (400.0, 10.0)
+    assert np.isnan(under.at(np.full(3, np.nan))[0])
+    under.forget()
+    assert np.isnan(under.at(np.zeros(3))[0])
 
 
 def test_markers_show_what_is_known_and_take_away_what_is_not() -> None:

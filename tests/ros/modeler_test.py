@@ -17,13 +17,14 @@ import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Point32, PointStamped, PolygonStamped, PoseStamped, TwistStamped, WrenchStamped
-from saras_ros1.msg import CsaModelerState, CsaTeleopState
+from saras_ros1.msg import CsaAdmittance, CsaModelerState, CsaStiffness, CsaTeleopState
 from saras_ros1.srv import KeepModel, SetRegion
 from sensor_msgs.msg import PointCloud2
 from std_srvs.srv import SetBool, Trigger
 from support import ROOT, Newest, spawn, wait_until
 from visualization_msgs.msg import Marker
 
+from saras.csa import SlaveMlc
 from saras.csa.system import load
 from saras.model import StiffMesh
 from saras.sim.palpation import Phantom
@@ -58,6 +59,7 @@ class Modeler(unittest.TestCase):
         cls.setup = load(SYSTEM).setup()
         cls.truth = Phantom(cls.setup.tissue_config())
         cls.told = Newest("/csa/teleop/state", CsaTeleopState)
+        cls.did = Newest("/csa/slave/admittance", CsaAdmittance)
         cls.state = Newest("/csa/modeler/state", CsaModelerState)
         cls.cloud = Newest("/csa/modeler/stiffness", PointCloud2)
         cls.touched = Newest("/csa/modeler/touched", PointCloud2)
@@ -156,6 +158,48 @@ class Modeler(unittest.TestCase):
         self.assertLess(np.abs(spots() - self.setup.start()[:2]).max(), 0.007)
         self.assertEqual(self.state.message.cost_error, "")
         self.assertTrue(set_region(polygon([], frame)).success)
+
+    def gains(self) -> np.ndarray:
+        """The last twenty of K_g."""
+        return np.array([m.admittance_m_Ns for m in self.did.all[-20:]])
+
+    def falls_back(self) -> None:
+        """To the gain of the largest stiffness, and stays there."""
+        self.did.clear()
+        wait_until(
+            lambda: len(self.gains()) == 20 and np.ptp(self.gains()) == 0.0 and self.gains()[0] <= self.largest,
+            lambda: f"the gain of what is not known: {self.gains()}",
+        )
+
+    def rises(self) -> None:
+        self.did.clear()
+        wait_until(
+            lambda: len(self.gains()) == 20 and self.gains().min() > 1.3 * self.least,
+            lambda: f"a gain above {self.least}: {self.gains()}",
+            60.0,
+        )
+
+    def test_a5_the_slaves_gain_follows_the_map_and_falls_back_without_it(self) -> None:
+        self.largest = SlaveMlc(self.setup.slave_config()).admittance(np.nan) + 1e-12
+        self.surgeon.go(DOWN, 1.0)
+        under = Newest("/csa/slave/stiffness", CsaStiffness)
+        wait_until(lambda: under.message and 100.0 < under.message.stiffness_N_m < 1300.0, lambda: str(under.message))
+        teller = pid_of("/csa_stiffness")  # who is stopped does not say it
+        os.kill(teller, signal.SIGSTOP)
+        try:
+            self.falls_back()
+        finally:
+            os.kill(teller, signal.SIGCONT)
+        self.least = self.gains()[0]
+        self.rises()
+        os.kill(pid_of("/csa_modeler"), signal.SIGKILL)
+        wait_until(lambda: np.isnan(under.message.stiffness_N_m), lambda: str(under.message))
+        self.falls_back()
+        # It is started again and knows nothing: what is pressed now is learned anew.
+        wait_until(lambda: self.state.next().well, lambda: self.state.message.status, 60.0)
+        self.surgeon.follow(lambda t: DOWN + np.array([0.004 * np.sin(1.5 * t), 0.004 * np.sin(1.1 * t), 0.0]), 8.0)
+        wait_until(lambda: under.message.stiffness_N_m > 100.0, lambda: str(under.message), 60.0)
+        self.rises()
 
     def test_b1_saved_reset_and_loaded(self) -> None:
         save, load_file = self.service("save", KeepModel), self.service("load", KeepModel)
