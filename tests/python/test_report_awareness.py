@@ -52,6 +52,8 @@ def write(path, *, hold=True):
         bag.vector(
             "/csa/master/servo_cf", t, np.array([0, 0, 1.5 if state == FULL else 0.0, 0, 0, 0]), "Wrench", "PSM1"
         )
+        push = np.array([-0.75 if 20.0 <= t < 20.1 else 0.0, 0, 0, 0, 0, 0])
+        bag.vector("/csa/master/border", t, push, "Wrench", "PSM1")
         if i == 1800:
             corners = [
                 bag.make("geometry_msgs/msg/Point32", x=0.01 * a, y=0.01 * b, z=0.0)
@@ -78,6 +80,7 @@ def test_verdicts_are_the_numbers_that_went_in(bag) -> None:
     assert verdicts["Out of the region"].value == f"{1e3 * OUT_M:.2f} mm"
     assert verdicts["Out of the region"].grade == "bad"
     assert verdicts["Force on the hand"].value == "1.50 N"
+    assert verdicts["Force on the hand"].detail.endswith("fixtures asked for up to 0.75 N")
     assert verdicts["Holds"].value == "1" and verdicts["Holds"].grade == "warning"
     assert verdicts["Joint speeds"].value == "50 %"
 
@@ -88,6 +91,7 @@ def test_the_page_names_the_hold_and_draws(bag, tmp_path) -> None:
     html = page.read_text(encoding="utf-8")
     assert [v.title for v in found.verdicts][:2] == ["Contact", "Force error"]
     assert "FORCE_UNKNOWN" in html and html.count("<svg") >= 7 and "region of interest" in html
+    assert "wanted by the fixtures" in html
 
 
 def test_what_was_not_recorded_is_unknown(tmp_path) -> None:

@@ -18,6 +18,7 @@ from saras.report.verdicts import Findings, Verdict
 
 Floats = NDArray[np.float64]
 
+BORDER_TOPIC = "/csa/master/border"
 STATE_TOPIC = "/csa/teleop/state"
 STATES = ("NO_CONTACT", "PROXY_CONTACT", "SLAVE_CONTACT", "FULL_CONTACT")
 CSS = ("waiting", "ready", "clutch", "engaged")
@@ -175,6 +176,9 @@ def _hand(session: Session) -> Verdict:
     step, dt = np.linalg.norm(np.diff(wrench.value[:, :3], axis=0), axis=1), np.diff(wrench.t)
     rate = float((step[dt > 0.0] / dt[dt > 0.0]).max()) if (dt > 0.0).any() else 0.0
     detail = f"at most; it changes by up to {rate:.0f} N/s"
+    border = wrench_series(session.topic(BORDER_TOPIC))
+    if border is not None and len(border.t):
+        detail += f"; fixtures asked for up to {np.linalg.norm(border.value[:, :3], axis=1).max():.2f} N"
     return Verdict("Force on the hand", f"{force.max():.2f} N", detail, "good" if force.max() > 0.0 else "warning")
 
 
@@ -234,6 +238,9 @@ def force(session: Session) -> str:
         panel.line(did.t, did["desired_force_N"], "wanted, with palpation", "command", True)
     if hand is not None:
         panel.line(hand.t, np.linalg.norm(hand.value[:, :3], axis=1), "on the hand", "master")
+    border = wrench_series(session.topic(BORDER_TOPIC))
+    if border is not None:
+        panel.line(border.t, np.linalg.norm(border.value[:, :3], axis=1), "wanted by the fixtures", "extra", True)
     gain = _chart(session, "admittance K_g [mm/(N s)]", height=110, y_include=(0.0,))
     if did is not None:
         gain.line(did.t, 1e3 * did["admittance_m_Ns"], "used", "extra")
