@@ -1,8 +1,9 @@
 """Rows of script/bench model: samples until the inclusion is located within 2 mm, beside a raster scan.
 
-A phantom of 80 x 80 mm with its inclusion at a seeded place; both press with the same strokes at 10 mm/s and ask the
-same map for its stiffest well-known vertex. The raster's lines are 2 mm apart. Counted until the answer is within 2 mm
-for good: for the raster until its end, for the explorer over four more paths.
+A phantom of 80 x 80 mm with its inclusion at a seeded place; both press with the same strokes at 10 mm/s, never lift,
+and ask the same map for its stiffest well-known vertex. The raster's lines are 2 mm apart. All samples count, those on
+the way too, until the answer is within 2 mm for good: for the raster until its end, for the explorer over PATHS_AFTER
+more paths. Both are asked every ASKED samples.
 """
 
 from __future__ import annotations
@@ -14,11 +15,12 @@ import numpy as np
 from saras import sim
 from saras.model import GpHyperparameters, StiffnessGpConfig, StiffnessMap
 from saras.model.exploring import TrajectoryOptimizer
-from saras.sim.palpation import Phantom, along_path, palpate, raster_path
+from saras.sim.palpation import Palpation, Phantom, along_path, palpate, raster_path
 
 HALF_M, SPEED_M_S, DT = 0.04, 0.01, 5e-3
 LOCATED_M, KNOWN_N_M = 2e-3, 120.0
-DRAWS, PATHS = 8, 80
+DRAWS, ASKED, PATHS_AFTER = 24, 100, 5
+COSTS = ("lump", "upper_confidence", "variance")
 SIDE = np.linspace(-HALF_M, HALF_M, 41)
 LATTICE = np.array([(x, y) for x in SIDE for y in SIDE])
 
@@ -46,49 +48,63 @@ def new_map() -> StiffnessMap:
     return StiffnessMap(config)
 
 
-def located(model: StiffnessMap, here: Phantom, vertices: np.ndarray) -> bool:
-    found = model.estimate(vertices)
-    sure = found.known & (found.stiffness_std_N_m < KNOWN_N_M)
-    stiffest = vertices[np.argmax(np.where(sure, found.stiffness_N_m, -np.inf))]
-    return bool(sure.any() and np.linalg.norm(stiffest - here.inclusion) < LOCATED_M)
+class Scan:
+    """One map being learned, and since how many samples its answer is right for good."""
+
+    def __init__(self, here: Phantom) -> None:
+        self.model, self.here, self.vertices = new_map(), here, here.surface(LATTICE)
+        self.surely = np.full(len(self.vertices), -np.inf)
+        self.samples, self.since = 0, np.inf
+
+    def learn(self, recorded: Palpation) -> None:
+        for begin in range(0, len(recorded), ASKED):
+            some = slice(begin, begin + ASKED)
+            positions = recorded.positions[some]
+            self.model.partial_fit(positions, recorded.forces[some], recorded.velocities[some])
+            self.samples += len(positions)
+            self.since = min(self.since, self.samples) if self._located(positions) else np.inf
+
+    def _located(self, touched: np.ndarray) -> bool:
+        """Only vertices within reach of what was touched are asked again: nothing changes further away."""
+        reach_m = self.model.config.local.radius_m + 2e-3
+        squared = ((self.vertices[:, None] - touched[:: ASKED // 10]) ** 2).sum(2).min(1)
+        near = np.flatnonzero(squared < reach_m**2)
+        found = self.model.estimate(self.vertices[near])
+        sure = found.known & (found.stiffness_std_N_m < KNOWN_N_M)
+        self.surely[near] = np.where(sure, found.stiffness_N_m, -np.inf)
+        best = int(self.surely.argmax())
+        return bool(self.surely[best] > 0.0 and np.linalg.norm(self.vertices[best] - self.here.inclusion) < LOCATED_M)
 
 
 def raster(seed: int) -> float:
-    here, model = phantom(seed), new_map()
-    path = raster_path(2 * HALF_M, 2e-3, SPEED_M_S, DT)
-    recorded, vertices = palpate(here, path, DT, seed=seed), here.surface(LATTICE)
-    line, since = round(2 * HALF_M / SPEED_M_S / DT), np.inf
-    for begin in range(0, len(path), line):
-        some = slice(begin, begin + line)
-        model.partial_fit(recorded.positions[some], recorded.forces[some], recorded.velocities[some])
-        since = min(since, begin + line) if located(model, here, vertices) else np.inf
-    return since
+    scan = Scan(phantom(seed))
+    scan.learn(palpate(scan.here, raster_path(2 * HALF_M, 2e-3, SPEED_M_S, DT), DT, seed=seed))
+    return scan.since
 
 
 def explore(seed: int, cost: str) -> float:
-    here, model = phantom(seed), new_map()
-    optimizer = TrajectoryOptimizer(
-        model, here.surface, [-HALF_M] * 2, [HALF_M] * 2, cost=cost, corners=2, step_m=0.025, seed=100 * seed
+    """As the modeler's node: a path is planned, gone to its first corner, and planned again."""
+    scan = Scan(phantom(seed))
+    plans = TrajectoryOptimizer(
+        scan.model, scan.here.surface, [-HALF_M] * 2, [HALF_M] * 2, cost=cost, corners=2, step_m=0.025, seed=100 * seed
     )
-    vertices, at, samples, since, held = here.surface(LATTICE), np.full(2, -HALF_M), 0, np.inf, 0
-    for i in range(PATHS):
-        plan = optimizer.next(at)
-        recorded = palpate(here, along_path(plan.corners, SPEED_M_S, DT), DT, seed=1000 * seed + i)
-        model.partial_fit(recorded.positions, recorded.forces, recorded.velocities)
-        samples, at = samples + len(recorded), plan.corners[-1]
-        found = located(model, here, vertices)
-        since, held = (min(since, samples), held + 1) if found else (np.inf, 0)
-        if held > 4:
-            break
-    return since
+    at, held, whole, i = np.full(2, -HALF_M), 0, len(raster_path(2 * HALF_M, 2e-3, SPEED_M_S, DT)), 0
+    while held < PATHS_AFTER and scan.samples < whole:
+        way = along_path(plans.next(at).corners[:2], SPEED_M_S, DT)
+        i += 1
+        if len(way):
+            scan.learn(palpate(scan.here, way, DT, seed=1000 * seed + i))
+            at = way[-1]
+        held = held + 1 if np.isfinite(scan.since) else 0
+    return scan.since
 
 
-def run(draws: int = DRAWS) -> list[dict]:
+def run(draws: int = DRAWS, costs: tuple[str, ...] = COSTS) -> list[dict]:
     """One row a cost. The ratio is that of the means; an explorer that never found it counts as the whole raster."""
     scans = np.array([raster(seed) for seed in range(draws)])
     whole = len(raster_path(2 * HALF_M, 2e-3, SPEED_M_S, DT))
     rows = []
-    for cost in ("upper_confidence", "variance"):
+    for cost in costs:
         ours = np.array([explore(seed, cost) for seed in range(draws)])
         lost = int(np.isinf(ours).sum())
         values = [np.where(np.isinf(v), whole, v) for v in (ours, scans)]

@@ -36,7 +36,9 @@ class Explorer:
         self._known = known
         if region is not self._region or self._optimizer is None:
             self._region, self._corners = region, np.zeros((0, 2))
-            self._optimizer = TrajectoryOptimizer(self, region.surface, region.low, region.high, **self._options)
+            self._optimizer = TrajectoryOptimizer(
+                self, region.surface, region.low, region.high, inside=region.inside, **self._options
+            )
         region.mesh = self._live.laid.mesh
         at = region.chart(tip)[0]
         now = time.monotonic()
@@ -47,5 +49,6 @@ class Explorer:
         if not len(self._corners):
             plan: Plan = self._optimizer.next(region.inside(at)[0])
             self.error, self.plans = "" if plan.error is None else str(plan.error), self.plans + 1
-            self._corners, self._since_s = region.inside(plan.corners[1:]), time.monotonic()
+            # To the first corner only: what is felt on the way there is in the next plan.
+            self._corners, self._since_s = plan.corners[1:2], time.monotonic()
         return np.asarray(region.surface(self._corners[:1])[0])

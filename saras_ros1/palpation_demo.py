@@ -35,7 +35,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
         "--out", type=Path, metavar="DIR", help="where bag, map, report and logs go; default out/<date>"
     )
     parser.add_argument("--seed", type=int, default=1, help="of the inclusion's place and the prior's shift and bend")
-    parser.add_argument("--cost", default="upper_confidence", help="upper_confidence, variance or an entry point")
+    parser.add_argument("--cost", default="lump", help="lump, upper_confidence, variance or an entry point")
     arguments = parser.parse_args(argv)
     if not LEAST_S <= arguments.duration <= 3600.0:
         parser.error(f"--duration {arguments.duration:g}: must be in [{LEAST_S:g}, 3600] seconds")

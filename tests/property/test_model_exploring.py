@@ -57,6 +57,28 @@ def test_variance_makes_all_of_it_known(phantom):
     assert many.known.mean() > 0.9 > few.known.mean()
 
 
+@pytest.mark.parametrize("cost", ["lump", "upper_confidence", "variance"])
+def test_paths_keep_to_where_the_tip_may_go(phantom, cost):
+    def inside(across):
+        return across * np.minimum(1.0, 0.01 / np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-12))
+
+    plans = optimizer(StiffnessMap(), phantom, cost, inside=inside)
+    for start in ([0.0, 0.0], [0.01, 0.0], [0.0, -0.01]):
+        plan = plans.next(start)
+        assert (np.linalg.norm(plan.corners, axis=1) <= 0.01 + 1e-9).all() and np.ptp(plan.corners, axis=0).max() > 5e-4
+
+
+def test_a_found_lump_leaves_the_rest_to_the_upper_confidence_bound(phantom):
+    search = exploring.LumpSearch()
+    plans = optimizer(StiffnessMap(), phantom, search)
+    asked = []
+    search.judge = lambda paths: asked.append(1) or -paths.sum((1, 2))
+    plans.next([0.0, 0.0])
+    assert len(asked) == 6
+    search.survey = lambda *known: setattr(search, "found", True)
+    assert plans.next([0.0, 0.0]).error is None and len(asked) == 6
+
+
 def test_a_users_cost_is_followed(phantom):
     def towards_the_corner(estimates, points):
         return -points[:, :, :2].sum(axis=(1, 2))
@@ -102,6 +124,7 @@ def test_costs_by_name(monkeypatch):
     entry = metadata.EntryPoint("mine", "saras.model.exploring:upper_confidence", exploring.ENTRY_POINTS)
     monkeypatch.setattr(exploring, "entry_points", lambda group: [entry] if group == exploring.ENTRY_POINTS else [])
     assert exploring.find_cost("mine") is exploring.upper_confidence
+    assert isinstance(exploring.find_cost("lump"), exploring.LumpSearch)
     with pytest.raises(saras.ConfigError, match=r"cost = 'theirs': must be one of .*mine"):
         exploring.find_cost("theirs")
 

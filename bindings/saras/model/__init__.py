@@ -22,6 +22,7 @@ from saras._core.model import (
 )
 from saras.model.exploring import CostError, Plan, TrajectoryOptimizer
 from saras.model.learning import GpLearning, learn_hyperparameters
+from saras.model.lump import LumpSearch
 from saras.model.octave import OctaveCost, OctaveError
 from saras.model.registering import (
     Deformation,
@@ -47,6 +48,7 @@ __all__ = [
     "HashGridConfig",
     "LocalGp",
     "LocalModelConfig",
+    "LumpSearch",
     "Mesh",
     "OctaveCost",
     "OctaveError",

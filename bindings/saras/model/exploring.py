@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from saras import ConfigError, ModelError
 from saras._core.model import CrossEntropy
+from saras.model.lump import LumpSearch
 from saras.model.octave import OctaveCost
 from saras.model.stiffness_map import StiffnessMap, SurfaceEstimates
 
@@ -20,6 +21,7 @@ Cost = Callable[[SurfaceEstimates, Array], npt.ArrayLike]
 """(estimates at c * n points, the points (c, n, 3) [m]) -> (c,) costs, one a path; the least is best."""
 
 ENTRY_POINTS = "saras.exploration_costs"
+LATTICE = 700  #: places of the chart that a lump's summit may be at
 
 
 class CostError(ModelError):
@@ -63,10 +65,11 @@ def upper_confidence(
 
 
 COSTS: dict[str, Cost] = {"variance": variance, "upper_confidence": upper_confidence}
+LUMP = "lump"
 
 
-def find_cost(cost: str | Cost) -> Cost:
-    """One of COSTS, a file NAME.m for Octave, an entry point of saras.exploration_costs, or the callable itself.
+def find_cost(cost: str | Cost | LumpSearch) -> Cost | LumpSearch:
+    """One of COSTS, `lump`, NAME.m for Octave, an entry point of saras.exploration_costs, or the callable itself.
 
     Raises ConfigError, and ModelError for a .m file that does not start.
     """
@@ -74,11 +77,13 @@ def find_cost(cost: str | Cost) -> Cost:
         return cost
     if cost in COSTS:
         return COSTS[cost]
+    if cost == LUMP:
+        return LumpSearch()
     if cost.endswith(".m"):
         return OctaveCost(cost)
     installed = {point.name: point for point in entry_points(group=ENTRY_POINTS)}
     if cost not in installed:
-        raise ConfigError(f"cost = {cost!r}: must be one of {sorted([*COSTS, *installed])}, NAME.m or a callable")
+        raise ConfigError(f"cost = {cost!r}: must be one of {sorted([*COSTS, LUMP, *installed])}, NAME.m or a callable")
     loaded: Cost = installed[cost].load()
     return loaded
 
@@ -87,10 +92,14 @@ class TrajectoryOptimizer:
     """Plans a path of a few corners from where the tip is, over what the map knows.
 
     model: StiffnessMap. surface: (n, 2) coordinates of a chart [m] -> (n, 3) points on the surface, base frame [m] (the
-    plane of a region of interest projected to a mesh, a phantom's). low, high: (2,) bounds of the chart. cost: of
-    COSTS, an entry point, a .m file, or a callable. corners: of a path, without its start. step_m: expected length
-    between two corners; paths are within 0.5 and 1.5 times it. spacing_m: between the points that are asked for.
+    plane of a region of interest projected to a mesh, a phantom's). low, high: (2,) bounds of the chart. cost: `lump`
+    (LumpSearch; where that is found, `upper_confidence` goes on), of COSTS, an entry point, a .m file, or a callable.
+    inside: (n, 2) of the chart moved to where the tip may go; None: anywhere within the bounds. corners: of a path,
+    without its start. step_m: expected length between two corners; paths are at most 1.5 times it, and at least half
+    of it unless the cost charges for the way, as `lump` does. spacing_m: between the points that are asked for.
     time_limit_s: for one call of the cost. Raises ConfigError.
+
+    Whoever goes to the first corner only and asks again uses what was felt on the way.
     """
 
     def __init__(
@@ -100,7 +109,8 @@ class TrajectoryOptimizer:
         low: npt.ArrayLike,
         high: npt.ArrayLike,
         *,
-        cost: str | Cost = "upper_confidence",
+        cost: str | Cost | LumpSearch = LUMP,
+        inside: Callable[[Array], Array] | None = None,
         corners: int = 2,
         step_m: float = 0.012,
         spacing_m: float = 3e-3,
@@ -121,6 +131,7 @@ class TrajectoryOptimizer:
         self._points = corners * max(2, round(step_m / spacing_m))
         self._time_limit_s, self._seed = time_limit_s, seed
         self._hanging: threading.Thread | None = None
+        self._inside = (lambda across: across) if inside is None else inside
 
     def next(self, start: npt.ArrayLike) -> Plan:
         """The best path from start (2,) in the chart [m]. A cost that fails is named in the plan, never raised."""
@@ -128,15 +139,28 @@ class TrajectoryOptimizer:
         self._seed += 1
         error: CostError | None = None
         try:
-            best, cost = self._search(at, self._guarded)
+            best, cost = self._search(at, self._lump() or self._guarded)
         except CostError as raised:
             error = raised
             best, cost = self._search(at, variance)
-        corners = np.concatenate([at[None], best.reshape(-1, 2)])
+        corners = np.concatenate([at[None], best])
         return Plan(corners, self._surface(self._along(corners[None])[0]), cost, error)
 
-    def _search(self, start: Array, cost: Cost) -> tuple[Array, float]:
-        count = 2 * self._corners
+    def _lump(self) -> LumpSearch | None:
+        """The search with what is known now; None: another cost is asked for, or the lump is found."""
+        if not isinstance(self._cost, LumpSearch):
+            return None
+        extent_m = self._high - self._low
+        spacing_m = float(max(np.sqrt(extent_m.prod() / LATTICE), 1e-4))
+        x, y = (np.arange(low + 0.5 * spacing_m, high, spacing_m) for low, high in zip(self._low, self._high))
+        lattice = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+        lattice = lattice[(np.abs(self._inside(lattice) - lattice) < 1e-9).all(1)]
+        if not len(lattice):
+            return None
+        self._cost.survey(lattice, spacing_m, self._model.estimate(self._surface(lattice)))
+        return None if self._cost.found else self._cost
+
+    def _search(self, start: Array, cost: Cost | LumpSearch) -> tuple[Array, float]:
         middle = np.clip(
             np.tile(start, self._corners), np.tile(self._low, self._corners), np.tile(self._high, self._corners)
         )
@@ -152,14 +176,19 @@ class TrajectoryOptimizer:
         )
         for _ in range(self._rounds):
             asked = search.ask()
-            paths = np.concatenate([np.tile(start, (len(asked), 1)), asked], axis=1).reshape(len(asked), -1, 2)
+            corners = self._inside(asked.reshape(-1, 2)).reshape(len(asked), -1, 2)
+            paths = np.concatenate([np.tile(start, (len(asked), 1, 1)), corners], axis=1)
             across = self._along(paths)
-            points = self._surface(across.reshape(-1, 2)).reshape(*across.shape[:2], 3)
-            costs = np.asarray(cost(self._model.estimate(points.reshape(-1, 3)), points), dtype=float)
+            if isinstance(cost, LumpSearch):
+                costs, shortest = cost.judge(across), 0.05  # it pays for the way itself
+            else:
+                points = self._surface(across.reshape(-1, 2)).reshape(*across.shape[:2], 3)
+                costs = np.asarray(cost(self._model.estimate(points.reshape(-1, 3)), points), dtype=float)
+                shortest = 0.5
             # Where all is unknown, staying would cost no more than going, and going far no more than going near.
             length = np.linalg.norm(np.diff(paths, axis=1), axis=2).sum(1) / (self._step_m * self._corners)
-            search.tell(np.where((length < 0.5) | (length > 1.5), np.inf, costs))
-        best: Array = search.best.reshape(count)
+            search.tell(np.where((length < shortest) | (length > 1.5), np.inf, costs))
+        best: Array = self._inside(search.best.reshape(-1, 2))
         return best, float(search.best_cost)
 
     def _along(self, paths: Array) -> Array:
@@ -172,15 +201,16 @@ class TrajectoryOptimizer:
 
     def _guarded(self, estimates: SurfaceEstimates, points: Array) -> Array:
         """The user's cost in a thread of its own: it may raise, hang, or answer nonsense."""
-        if self._cost in COSTS.values():
-            return np.asarray(self._cost(estimates, points), dtype=float)
+        cost = upper_confidence if isinstance(self._cost, LumpSearch) else self._cost  # the lump is found: others?
+        if cost in COSTS.values():
+            return np.asarray(cost(estimates, points), dtype=float)
         if self._hanging is not None and self._hanging.is_alive():
             raise CostError(f"cost {self._name}: is still busy with an earlier call")
         answer: list[object] = []
 
         def call() -> None:
             try:
-                answer.append(np.asarray(self._cost(estimates, points), dtype=float))
+                answer.append(np.asarray(cost(estimates, points), dtype=float))
             except BaseException as raised:  # whatever it is: it is named, and the loop goes on
                 answer.append(raised)
 
