@@ -136,6 +136,7 @@ def error_rows(samples: int, ours: StiffnessMap, theirs) -> list[dict]:
             file=sys.stderr,
         )
     # The map is there for stiffness; between dense samples a process over all of them interpolates force better.
+    # That is the price of 64 neighbours: docs/model.md, "How it works".
     if samples >= 10_000 and not rows[1]["ratio"]["scikit-learn"] >= 1.0:
         raise NotTheSame(f"model: scikit-learn predicts held-out stiffness better: {rows[1]}")
     return rows
