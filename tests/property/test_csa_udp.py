@@ -298,6 +298,17 @@ def test_a_silent_controller_is_a_hold(rig):
     rig.comes_back()
 
 
+def test_a_controller_that_falls_silent_with_the_slave_is_the_slaves_loss(rig):
+    numbers = iter(range(1, 1000))
+    rig.remote = RemoteSlave(RemoteSlaveConfig(GATE, state_timeout_s=0.5), lambda: next(numbers))
+    rig.engage()
+    rig.tick(alive=False)  # one more set-point goes out
+    rig.target = None
+    rig.holds(HoldReason.SLAVE_LOST, rig.tick(alive=False, count=12))
+    rig.tick()
+    rig.comes_back()
+
+
 def test_a_set_point_far_away_is_a_hold_and_does_not_go_out(rig):
     rig.engage()
     rig.target = rig.q + 0.3

@@ -3,14 +3,17 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
 import tempfile
 import unittest
+import xmlrpc.client
 from pathlib import Path
 
 import numpy as np
+import rosgraph
 import rospy
 import rostest
 from crtk_msgs.msg import OperatingState, StringStamped
@@ -96,6 +99,8 @@ class CsaUdp(unittest.TestCase):
         goal[joint] += by
 
         def there() -> bool:
+            if self.reason.message.data == "SLAVE_LOST":  # for a moment, on a busy machine
+                self.state_command.publish(StringStamped(string="resume"))
             publisher.publish(JointState(position=goal.tolist()))
             return np.abs(np.array(self.joints.message.position) - goal).max() < 1e-3
 
@@ -189,6 +194,18 @@ class CsaUdp(unittest.TestCase):
         self.rests()
         self.begin("python")
         self.rouse("resume")
+        self.presses()
+
+    def test_f_the_platforms_end_dies(self) -> None:
+        """It is started again, DISABLED: the slave stands until it is enabled."""
+        before = convert.pose(self.tip.next())[:3, 3]
+        node = rosgraph.Master("/csa_udp_test").lookupNode("/csa_udp_slave")
+        os.kill(xmlrpc.client.ServerProxy(node).getPid("/csa_udp_test")[2], signal.SIGKILL)
+        wait_until(lambda: self.told.message.hold, lambda: self.told.message.reason)
+        wait_until(lambda: "DISABLED (DISABLED)" in self.told.message.reason, lambda: self.told.message.reason, 60.0)
+        np.testing.assert_allclose(convert.pose(self.tip.next())[:3, 3], before, atol=2e-3)
+        self.rouse("enable")
+        self.did.clear()
         self.presses()
 
 

@@ -72,10 +72,14 @@ class SlaveGate:
 
     def check(self, now_ns: int) -> bool:
         """Whether it still follows. Call it each period."""
-        silent_s = (now_ns - self._heard_ns) * 1e-9
+        silent_s = self.silent_s(now_ns)
         if self.hold == CsaHold.NONE and silent_s > self.config.timeout_s:
             self._end(CsaHold.NO_SET_POINT, f"no set-point for {silent_s * 1e3:.0f} ms")
         return bool(self.hold == CsaHold.NONE)
+
+    def silent_s(self, now_ns: int) -> float:
+        """Since the last set-point that was followed."""
+        return (now_ns - self._heard_ns) * 1e-9
 
     def _refusal(self, down: CsaDown, q: Array, base_T_tip: Array) -> str:
         if down.mode == CsaMode.JOINTS:

@@ -178,7 +178,9 @@ class RemoteSlave:
             more = f"{self._age_s * 1e3:.0f} ms" if missing is HoldReason.SLAVE_LOST else ""
             self._pause(missing, more or self._other_joints)
         elif self._engagement and not self._gate.check(now_ns):
-            self._pause(HoldReason.SET_POINT_LOST, self._gate.reason)
+            # Who sends set-points steps on the slave's state, and falls silent with it: that is the slave's loss.
+            with_it = self._age_s > 0.5 * self._gate.silent_s(now_ns)
+            self._pause(HoldReason.SLAVE_LOST if with_it else HoldReason.SET_POINT_LOST, self._gate.reason)
         elif self._engagement and self.up is not None:
             if self.up.engagement == self._engagement and self.up.hold != CsaHold.NONE:
                 self._pause(HoldReason.SLAVE_HOLDS, self.up.hold.name)
