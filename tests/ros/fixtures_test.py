@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """A hand drives its arm into virtual walls. Test methods run in alphabetical order and build on each other."""
 
+import re
 import unittest
 
 import numpy as np
@@ -14,6 +15,7 @@ from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 from support import FakeConsole, Newest, wait_until
 
+from saras.runtime import read_flight, replay_flight
 from saras_ros1 import convert
 
 SIDES = ("left", "right")
@@ -147,6 +149,15 @@ class FixturesTest(unittest.TestCase):
         self.go(np.array([-0.02, 0.0, 0.0]))
         np.testing.assert_allclose(self.away("left"), before, atol=1e-9)
         self.fixtures_say(lambda m: not vector(m.force).any(), "no force from a wall that is nowhere")
+
+    def test_5_the_loops_record_replays_to_the_bit(self):
+        if self.hosting != "realtime":
+            return
+        answer = rospy.ServiceProxy("/realtime_host/write_record", Trigger)()
+        self.assertTrue(answer.success, answer.message)
+        replay = replay_flight(read_flight(re.search(r"\S+\.flight", answer.message)[0]))
+        self.assertGreater(replay.ticks, 100)
+        self.assertEqual(replay.exact, replay.ticks)
 
 
 def vector(message):

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kMillimetres = 1e3;
 constexpr int kRounds = 4;
-constexpr int kHalvings = 30;
+constexpr int kHalvings = 16;
 constexpr double kRounding_m = 1e-10;
 
 }  // namespace

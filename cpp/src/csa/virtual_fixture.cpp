@@ -144,8 +144,12 @@ Finding evaluate(const MeshFixture& fixture, Query& query, int& feature) {
   }
   feature = nearest.triangle + 1;
   std::array<MeshPoint, kMeshRows> others;
-  const int count = fixture.mesh->nearby(query.tip, std::abs(nearest.distance_m) + fixture.reach_m, others.data(),
-                                         static_cast<int>(others.size()));
+  // Far away no other face can be met in this tick, and too many would have to be looked at.
+  const double away = std::abs(nearest.distance_m);
+  int count = 0;
+  if (away <= fixture.reach_m + std::abs(fixture.margin_m)) {
+    count = fixture.mesh->nearby(query.tip, away + fixture.reach_m, others.data(), static_cast<int>(others.size()));
+  }
   const double distance = side * nearest.distance_m - fixture.margin_m;
   query.row(side * nearest.normal, -distance, kInfinity);
   for (int i = 0; i < count; ++i) {

@@ -47,7 +47,8 @@ struct MeshFixture {
   std::shared_ptr<const TriangleMesh> mesh;
   bool keep_in = false;
   double margin_m = 0.0;
-  double reach_m = 0.005;  ///< triangles further than the closest one by this give no row
+  double reach_m = 0.005;  ///< triangles further than the closest one by this give no row; none but
+                           ///< the closest one does when it is further than this from its border
 };
 
 using FixtureGeometry =
