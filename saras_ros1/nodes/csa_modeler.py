@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 import os
 import threading
-from pathlib import Path
 from typing import Callable
 
 import numpy as np
@@ -19,21 +18,22 @@ from sensor_msgs.msg import PointCloud2
 from std_srvs.srv import Trigger, TriggerResponse
 from visualization_msgs.msg import Marker
 
-from saras import ConfigError, Error, ModelError
-from saras.model import StiffMesh, StiffnessGpConfig
+from saras import ConfigError, ModelError
+from saras.model import StiffnessGpConfig
 from saras.model.live import Bending, LiveMap, Snapshot
 from saras.model.region import Region
 from saras.runtime import ModelHostConfig, VertexMapConfig
 from saras_ros1 import modeler_messages as messages
 from saras_ros1.csa_node import CsaNode, vector
 from saras_ros1.modeler_explorer import Explorer
-from saras_ros1.modeler_prior import prior_mesh, refuse_elsewhere
+from saras_ros1.modeler_keeping import Keeping
+from saras_ros1.modeler_prior import prior_mesh
 from saras_ros1.modeler_samples import Samples
 from saras_ros1.modeler_status import Pace, SampleStatus
 from saras_ros1.msg import CsaModelerState
 from saras_ros1.node import run
 from saras_ros1.params import Params
-from saras_ros1.srv import KeepModel, KeepModelResponse, SetRegion, SetRegionResponse
+from saras_ros1.srv import KeepModel, SetRegion, SetRegionResponse
 
 HYPER_GROWTH = 1.3  #: places since the last time, above which hyper-parameters are learned again
 
@@ -128,8 +128,9 @@ class CsaModeler(CsaNode):
         rospy.Subscriber("/csa/modeler/roi", PolygonStamped, self._on_region, queue_size=5)
         rospy.Service("/csa/modeler/set_region", SetRegion, self._on_set_region)
         rospy.Service("/csa/modeler/reset", Trigger, self._on_reset)
-        rospy.Service("/csa/modeler/save", KeepModel, self._on_save)
-        rospy.Service("/csa/modeler/load", KeepModel, self._on_load)
+        keeping = Keeping(self.live, self.keeping, self._forgotten)
+        rospy.Service("/csa/modeler/save", KeepModel, keeping.save)
+        rospy.Service("/csa/modeler/load", KeepModel, keeping.load)
 
     # ---- threads
 
@@ -253,35 +254,6 @@ class CsaModeler(CsaNode):
         self.samples.heard = 0
         self.bent_rms_m, self.learned_places, self.known = math.nan, 0, None
 
-    def _on_save(self, request) -> KeepModelResponse:
-        path = Path(request.path)
-        try:
-            if not path.is_absolute():
-                raise ConfigError(f"path = {request.path!r}: must be absolute")
-            if path.exists() and not request.force:
-                raise ConfigError(f"{path}: is there already: force overwrites it")
-            with self.keeping:
-                kept = self.live.stiff_mesh()
-                partial = path.with_name(f".{path.name}.part")
-                kept.save(partial)
-                partial.replace(path)
-        except (Error, OSError, ImportError) as error:
-            return KeepModelResponse(False, str(error))
-        known = int(np.isfinite(kept.stiffness_N_m).sum())
-        return KeepModelResponse(True, f"{path}: {len(kept.vertices)} vertices, {known} of them known")
-
-    def _on_load(self, request) -> KeepModelResponse:
-        try:
-            kept = StiffMesh.load(request.path)
-            refuse_elsewhere(kept, self.live.laid.mesh)
-            with self.keeping:
-                self.live.take(kept)
-                self._forgotten()
-        except (Error, OSError, ImportError) as error:
-            return KeepModelResponse(False, str(error))
-        known = int(np.isfinite(kept.stiffness_N_m).sum())
-        return KeepModelResponse(True, f"{request.path}: {len(kept.vertices)} vertices, {known} of them known")
-
     def report(self) -> dict:
         """What became of the samples, and how fast the map follows."""
         now = self.live.statistics()
@@ -289,6 +261,7 @@ class CsaModeler(CsaNode):
         return {
             "samples": self.status,
             **counts,
+            **self.samples.counts,
             "waiting_dropped": now.dropped,
             "places": now.places,
             "touched_hz": f"{self.touched_hz:.1f}",
