@@ -89,6 +89,8 @@ class WordWriter : public detail::WordArchive<WordWriter> {
     if constexpr (std::is_floating_point_v<T>) {
       const auto wide = static_cast<double>(value);
       std::memcpy(&word, &wide, sizeof(word));
+    } else if constexpr (std::is_same_v<T, char>) {
+      word = static_cast<unsigned char>(value);  // of a name
     } else {
       word = static_cast<std::uint64_t>(value);
     }
