@@ -14,6 +14,8 @@ if(SARAS_WARNINGS_AS_ERRORS)
   target_compile_options(saras_compiler_options INTERFACE -Werror)
 endif()
 if(SARAS_SANITIZE)
-  target_compile_options(saras_compiler_options INTERFACE -fsanitize=${SARAS_SANITIZE} -fno-omit-frame-pointer -g)
+  # Without following every variable: with sanitizers gcc takes minutes for that in the files with large laws.
+  target_compile_options(saras_compiler_options INTERFACE -fsanitize=${SARAS_SANITIZE} -fno-omit-frame-pointer -g
+    $<$<CXX_COMPILER_ID:GNU>:-fno-var-tracking-assignments>)
   target_link_options(saras_compiler_options INTERFACE -fsanitize=${SARAS_SANITIZE})
 endif()
