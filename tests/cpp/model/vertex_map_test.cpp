@@ -53,12 +53,12 @@ bool same(const VertexEstimate& a, const VertexEstimate& b) {
 
 TEST(VertexMap, AskingOnlyWhatIsOutOfDateTellsTheSameAsAskingEverything) {
   const SurfaceMesh mesh = plate_mesh(41);
-  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+  for (std::uint64_t seed = 0; seed < 3; ++seed) {
     Session session(seed);
     LocalModel workspace(session.law.config().local, session.law.config().grid);
     VertexMap map = map_of(mesh, session.law);
     std::size_t asked = 0;
-    for (int round = 0; round < 40; ++round) {
+    for (int round = 0; round < 15; ++round) {
       for (const Vector3& at : session.go_on(200)) {
         map.touch(at, session.law.config().grid.cell_m);
       }
@@ -69,14 +69,14 @@ TEST(VertexMap, AskingOnlyWhatIsOutOfDateTellsTheSameAsAskingEverything) {
         ASSERT_TRUE(same(map.estimates()[i], expected[i])) << "seed " << seed << " round " << round << " vertex " << i;
       }
     }
-    EXPECT_LT(asked, 40 * mesh.vertices.size() / 2);
+    EXPECT_LT(asked, 15 * mesh.vertices.size() / 2);
   }
 }
 
 TEST(VertexMap, SharingALocalModelTellsWhatOneOfItsOwnDoesWithinItsDeviation) {
   const SurfaceMesh mesh = plate_mesh(41);
   Session session(7);
-  session.go_on(30000);
+  session.go_on(15000);
   const auto shared = all_anew(mesh, session.law);
   LocalModel own(session.law.config().local, session.law.config().grid);
   const Vector3 up = Vector3::UnitZ();
@@ -90,7 +90,7 @@ TEST(VertexMap, SharingALocalModelTellsWhatOneOfItsOwnDoesWithinItsDeviation) {
           << i;
     }
   }
-  EXPECT_GT(known, 600);
+  EXPECT_GT(known, 500);
 }
 
 TEST(VertexMap, NearTheTipFirstThenTheLongestWaitingAndNobodyForEver) {
