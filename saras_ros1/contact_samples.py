@@ -114,6 +114,8 @@ class ContactSource:
         if force.stamp_ns == self._last_ns:
             return  # held
         self._last_ns = force.stamp_ns
+        if len(self._waiting) == PENDING:
+            self.counts["without_pose"] += 1  # the oldest one goes
         self._waiting.append((force.stamp_ns, force.value))
         self._give()
 

@@ -39,7 +39,9 @@ class SampleStatus:
 
     def count(self, total: dict[str, int]) -> None:
         """How many samples met which verdict since the start."""
-        self._recent.append((time.monotonic(), {name: n - self.total.get(name, 0) for name, n in total.items()}))
+        self._recent.append(
+            (time.monotonic(), {name: max(0, n - self.total.get(name, 0)) for name, n in total.items()})
+        )
         self.total = dict(total)
 
     def reset(self) -> None:

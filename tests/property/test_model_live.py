@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from typing import Callable
 
 import numpy as np
 import pytest
@@ -48,6 +49,13 @@ def learn(live: LiveMap, recorded, begin: int = 0, end: int | None = None) -> No
     part = slice(begin, len(recorded) if end is None else end)
     stamps = DT * np.arange(len(recorded))[part]
     live.learn(stamps, recorded.positions[part], recorded.forces[part], recorded.velocities[part])
+
+
+def wait_for(there: Callable[[], bool]) -> None:
+    end = time.monotonic() + 120.0
+    while not there():
+        assert time.monotonic() < end
+        time.sleep(1e-3)
 
 
 def learned(recorded, bending: Bending | None = None, prior: Mesh | None = None) -> LiveMap:
@@ -109,10 +117,8 @@ def test_threads_say_what_the_callers_own_would(recorded) -> None:
             stamps[part], recorded.positions[part], recorded.forces[part], recorded.velocities[part]
         )
         assert dropped == 0
-        while threaded.statistics().waiting > 1000:
-            time.sleep(1e-3)
-    while threaded.statistics().learning.count < len(recorded):
-        time.sleep(1e-3)
+        wait_for(lambda: threaded.statistics().waiting <= 1000)
+    wait_for(lambda: threaded.statistics().learning.count == len(recorded))
     threaded.stop()
     assert threaded.failure == ""
     a, b = threaded.refresh(), stepped.refresh()

@@ -144,7 +144,7 @@ class LiveMap:
         return self._host.push(stamps, positions, forces, velocities)
 
     def learn(self, stamps: Array, positions: Array, forces: Array, velocities: Array) -> dict[str, int]:
-        """Learns samples in this thread. How many met which SampleVerdict."""
+        """Learns samples, as of push(), in this thread. How many met which SampleVerdict."""
         before = self.statistics().verdicts
         room = self.config.room
         for begin in range(0, len(stamps), room):

@@ -65,8 +65,8 @@ struct Deformation {
   bool converged = false;
 };
 
-/// points: base frame. start: displacements to begin with (those of the last call), or empty. Throws ModelError as
-/// register_rigid, and for a start of another size.
+/// tree: of the mesh. points: base frame. start: displacements to begin with (those of the last call), or empty. Throws
+/// ModelError as register_rigid, and for a start of another size.
 Deformation deform(const SurfaceMesh& mesh, const MeshTree& tree, const DeformationGrid& grid,
                    const std::vector<SurfacePoint>& points, const Pose& base_T_mesh,
                    const DeformationOptions& options = {}, const std::vector<Vector3>& start = {});

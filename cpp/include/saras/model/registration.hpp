@@ -31,7 +31,7 @@ struct PosePrior {
 struct RegistrationOptions {
   double gate = 7.81;         ///< squared deviation above which a point is left out (95 % of three normal values)
   double mesh_noise_m = 0.0;  ///< standard deviation of the mesh's own error, each axis [m]
-  int max_iterations = 100;
+  int max_iterations = 100;   ///< until it has settled; where points were left out, at most 30 more weigh them
   double tolerance_m = 1e-6;  ///< settled: the mesh's points move less than this
   PosePrior prior;            ///< holds what the points leave open: a mesh slides along a smooth patch unseen
   bool most_likely = true;    ///< false: closest points, all weights equal: ICP (Besl and McKay 1992), for comparison
